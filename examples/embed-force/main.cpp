@@ -12,14 +12,15 @@
 #include <numbers>
 
 // Gas on circular orbits slows the motion beyond the shear: a = −γ c.
-class GasDrag : public keeler::Force {
+class GasDrag : public keeler::forces::Force {
 public:
   explicit GasDrag(double rate) : rate_(rate) {}
 
-  void accelerate(const keeler::Boundary& at, std::span<keeler::Vec3> accelerations) override {
+  void accelerate(const keeler::forces::Boundary& at, std::span<keeler::Vec3> accelerations) override {
     const keeler::Rotation rotation = at.rotation();
     for (std::size_t k = 0; k < accelerations.size(); ++k)
-      accelerations[k] = -rate_ * keeler::peculiar_velocity(at.particles.bodies[k].elements, at.frequencies, rotation);
+      accelerations[k] =
+          -rate_ * keeler::hill::peculiar_velocity(at.particles.bodies[k].elements, at.frequencies, rotation);
   }
 
 private:
@@ -35,15 +36,16 @@ keeler::Key number(const char* name, const char* fallback, const char* unit, con
           .range = {.low = 0, .high = 100}};
 }
 
-std::unique_ptr<keeler::Force> make_drag(const keeler::Parameters& keys, const keeler::ForceContext&) {
+std::unique_ptr<keeler::forces::Force> make_drag(const keeler::Parameters& keys, const keeler::forces::ForceContext&) {
   return std::make_unique<GasDrag>(keys.number("rate") / (2.0 * std::numbers::pi));
 }
 
-std::vector<keeler::State> place_on_epicycle(const keeler::Parameters& keys, const keeler::StartRequest& request) {
+std::vector<keeler::State> place_on_epicycle(const keeler::Parameters& keys,
+                                             const keeler::particles::StartRequest& request) {
   keeler::Elements orbit; // about the middle of the box
   orbit.e_cos = keys.number("eccentricity");
   const keeler::Rotation at_start(request.frequencies, 0.0);
-  return std::vector(request.radii.size(), keeler::state_at(orbit, request.frequencies, at_start));
+  return std::vector(request.radii.size(), keeler::hill::state_at(orbit, request.frequencies, at_start));
 }
 
 double eccentricity(const keeler::Simulation& simulation, const keeler::Scene&) {
@@ -51,9 +53,10 @@ double eccentricity(const keeler::Simulation& simulation, const keeler::Scene&) 
 }
 
 int main() {
-  keeler::add_force({"gas_drag", {number("rate", "0.1", "1/orbit", "gamma of the drag -gamma c")}, make_drag});
-  keeler::add_start({"epicycle", {number("eccentricity", "1.0", "m", "radius of the epicycle")}, place_on_epicycle});
-  keeler::add_series_column({"eccentricity_m", "m", "Epicycle: e", "radius of the epicycle", eccentricity});
+  keeler::forces::add_force({"gas_drag", {number("rate", "0.1", "1/orbit", "gamma of the drag -gamma c")}, make_drag});
+  keeler::particles::add_start(
+      {"epicycle", {number("eccentricity", "1.0", "m", "radius of the epicycle")}, place_on_epicycle});
+  keeler::runs::add_series_column({"eccentricity_m", "m", "Epicycle: e", "radius of the epicycle", eccentricity});
 
   const keeler::Scene scene = keeler::parse_scene(R"(
     planet.preset = "saturn-b-ring"
@@ -66,8 +69,8 @@ int main() {
     time = { step = 1e-3, end = 2.0 }
   )",
                                                   "embed-force");
-  keeler::RunRequests requests;
-  keeler::start_run(scene, {.folder = "gas-drag", .force = true}, requests);
+  keeler::runs::RunRequests requests;
+  keeler::runs::start_run(scene, {.folder = "gas-drag", .force = true}, requests);
 
   std::string line, last;
   for (std::ifstream series("gas-drag/series.csv"); std::getline(series, line);)

@@ -14,7 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace keeler {
+namespace keeler::batch {
 namespace {
 
 constexpr const char* program = "/proc/self/exe";
@@ -109,4 +109,4 @@ void Child::stop() {
     kill(process_, SIGTERM);
 }
 
-} // namespace keeler
+} // namespace keeler::batch

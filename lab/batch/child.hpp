@@ -10,7 +10,7 @@
 
 #include <sys/types.h>
 
-namespace keeler {
+namespace keeler::batch {
 
 /// The end of a child process.
 struct ChildEnd {
@@ -45,4 +45,4 @@ private:
   pid_t process_ = -1;                         // -1: it has ended
 };
 
-} // namespace keeler
+} // namespace keeler::batch

@@ -11,7 +11,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-namespace keeler {
+namespace keeler::batch {
 namespace {
 
 // FNV-1a hash, shifted to the range of lock offsets. If two names have one offset, one merely waits for the other.
@@ -60,4 +60,4 @@ void Claims::release(const std::string& name) {
   set_lock(descriptor_, F_OFD_SETLK, F_UNLCK, name);
 }
 
-} // namespace keeler
+} // namespace keeler::batch

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-namespace keeler {
+namespace keeler::batch {
 
 /// A claim is a lock on one byte of a file, at an offset hashed from the name (fcntl(2), "open file description
 /// locks"), so no stale claims remain. On a file system without locks every claim is granted.
@@ -30,4 +30,4 @@ private:
   int descriptor_;
 };
 
-} // namespace keeler
+} // namespace keeler::batch

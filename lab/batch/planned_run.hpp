@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-namespace keeler {
+namespace keeler::batch {
 
 struct PlannedRun {
   std::string name;      ///< name of its folder; determined by the settings and the seed alone
@@ -16,4 +16,4 @@ struct PlannedRun {
   Scene scene;
 };
 
-} // namespace keeler
+} // namespace keeler::batch

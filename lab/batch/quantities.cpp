@@ -16,16 +16,16 @@
 #include <limits>
 #include <span>
 
-namespace keeler {
+namespace keeler::batch {
 
 struct RunQuantities::Source {
-  SeriesTable series;
+  io::SeriesTable series;
   std::vector<std::size_t> rows; ///< indices in the measured part
   Patch last;
-  PatchUnits units;
-  Record transport;
-  Record wakes;    ///< empty without self-gravity
-  Record analysis; ///< all quantities of keeler analyze; empty if none was requested
+  quantities::PatchUnits units;
+  quantities::Record transport;
+  quantities::Record wakes;    ///< empty without self-gravity
+  quantities::Record analysis; ///< all quantities of keeler analyze; empty if none was requested
 };
 
 namespace {
@@ -37,17 +37,18 @@ using Source = RunQuantities::Source;
 constexpr double no_error = std::numeric_limits<double>::quiet_NaN();
 
 // Returns a plain number of a record. The scatter of snapshots is not used as the error of the mean.
-Maybe estimate_in(const Record& record, const Quantity& quantity) {
+Maybe estimate_in(const quantities::Record& record, const quantities::Quantity& quantity) {
   const std::optional<double> number = number_in(record, quantity.name);
   if (!number)
     return std::nullopt;
-  const auto* const uncertain = std::get_if<Uncertain>(find_value(record, quantity.name));
-  return Estimate{*number,
-                  uncertain && quantity.spread == Spread::error ? uncertain->spread.value_or(no_error) : no_error};
+  const auto* const uncertain = std::get_if<quantities::Uncertain>(find_value(record, quantity.name));
+  return Estimate{*number, uncertain && quantity.spread == quantities::Spread::error
+                               ? uncertain->spread.value_or(no_error)
+                               : no_error};
 }
 
-Maybe axis_in(const Record& record, const std::string& name, std::size_t axis) {
-  const Value* const value = find_value(record, name);
+Maybe axis_in(const quantities::Record& record, const std::string& name, std::size_t axis) {
+  const quantities::Value* const value = find_value(record, name);
   const auto* const vector = value ? std::get_if<std::vector<double>>(value) : nullptr;
   return vector && axis < vector->size() ? Maybe({(*vector)[axis], no_error}) : std::nullopt;
 }
@@ -60,7 +61,7 @@ Maybe column_mean(const Source& run, const std::string& column) {
   std::vector<double> values;
   for (const std::size_t row : run.rows)
     values.push_back((*all)[row]);
-  return block_mean(values);
+  return statistics::block_mean(values);
 }
 
 // Returns collisions per particle and orbit; each collision counts for both particles.
@@ -73,14 +74,15 @@ Maybe collision_rate(const Source& run) {
     rates.push_back(2.0 * (collisions[b] - collisions[a]) /
                     (static_cast<double>(run.last.size()) * (orbits[b] - orbits[a])));
   }
-  return block_mean(rates);
+  return statistics::block_mean(rates);
 }
 
 // Measures the last snapshot only, so the error is unknown.
 Maybe largest_cluster(const Source& run) {
   if (run.wakes.entries.empty())
     return std::nullopt;
-  const ClusterAnalysis clusters = analyze_clusters(std::span(&run.last, 1), default_cluster_gap);
+  const diagnostics::ClusterAnalysis clusters =
+      diagnostics::analyze_clusters(std::span(&run.last, 1), diagnostics::default_cluster_gap);
   return Estimate{clusters.largest_mass_fraction, no_error};
 }
 
@@ -96,24 +98,29 @@ std::vector<std::size_t> rows_between(const std::vector<double>& orbits, double 
 } // namespace
 
 RunQuantities::RunQuantities(const std::vector<std::string>& extra) {
-  const std::vector<Quantity> measured = measured_quantities();
+  const std::vector<quantities::Quantity> measured = runs::measured_quantities();
   const auto known = [&](const char* name) { return *find_quantity(measured, name); };
   for (const char* const name : {"translational_viscosity", "collisional_viscosity", "gravitational_viscosity",
                                  "total_viscosity", "loss_viscosity", "energy_balance"})
     add_measured(known(name), &Source::transport);
   for (const char* const axis : {"dispersion_x", "dispersion_y", "dispersion_z"})
-    add_series_mean(fmt::format("{}_m_s", axis),
-                    {axis, unit::metres_per_second, {}, {}, Spread::error, Forms::si_and_radius});
-  add_series_mean("dispersion_without_waves_x_m_s", {"dispersion_without_waves_x", unit::metres_per_second});
+    add_series_mean(fmt::format("{}_m_s", axis), {axis,
+                                                  quantities::unit::metres_per_second,
+                                                  {},
+                                                  {},
+                                                  quantities::Spread::error,
+                                                  quantities::Forms::si_and_radius});
+  add_series_mean("dispersion_without_waves_x_m_s",
+                  {"dispersion_without_waves_x", quantities::unit::metres_per_second});
   add_series_mean("epicyclic_wave_fraction", {"epicyclic_wave_fraction"});
-  add_series_mean("scale_height_m", {"scale_height", unit::metres});
-  add_series_mean("mean_spin_omega", {"mean_spin", unit::omega});
+  add_series_mean("scale_height_m", {"scale_height", quantities::unit::metres});
+  add_series_mean("mean_spin_omega", {"mean_spin", quantities::unit::omega});
   add_series_mean("spin_energy_ratio", {"spin_energy_ratio"});
-  add({"collisions_per_particle_orbit", unit::none, {}, "collisions faster than v_cut"}, collision_rate);
+  add({"collisions_per_particle_orbit", quantities::unit::none, {}, "collisions faster than v_cut"}, collision_rate);
   for (const char* const name : {"wake_amplitude", "wake_wavelength", "wake_angle"})
     add_measured(known(name), &Source::wakes);
   add({"largest_cluster_mass_share",
-       unit::none,
+       quantities::unit::none,
        {},
        "mass fraction of the largest cluster of touching spheres, in the last snapshot; with self-gravity"},
       largest_cluster);
@@ -121,8 +128,8 @@ RunQuantities::RunQuantities(const std::vector<std::string>& extra) {
   require_names(measured, extra);
   for (const std::string& name : extra) {
     bool has_column = false;
-    for (const Quantity& quantity : measured) {
-      if (!quantity.is_called(name) || quantity.shape == Shape::other)
+    for (const quantities::Quantity& quantity : measured) {
+      if (!quantity.is_called(name) || quantity.shape == quantities::Shape::other)
         continue;
       has_column = true;
       if (find(quantity.full_name()))
@@ -136,15 +143,15 @@ RunQuantities::RunQuantities(const std::vector<std::string>& extra) {
   }
 }
 
-void RunQuantities::add(const Quantity& quantity, const Reading& number) {
-  for (const UnitSystem system : quantity.systems()) {
-    const Unit in = unit_in(quantity.unit, system);
-    Quantity with_error = quantity; // every column has a column for its error
-    with_error.spread = Spread::error;
+void RunQuantities::add(const quantities::Quantity& quantity, const Reading& number) {
+  for (const quantities::UnitSystem system : quantity.systems()) {
+    const quantities::Unit in = unit_in(quantity.unit, system);
+    quantities::Quantity with_error = quantity; // every column has a column for its error
+    with_error.spread = quantities::Spread::error;
     columns_.push_back({quantity.full_name(system), with_error.spread_name(system),
-                        system != UnitSystem::si ? fmt::format("as above, in {}", in.text)
-                        : in.text.empty()        ? quantity.meaning
-                                                 : fmt::format("{}; {}", quantity.meaning, in.text)});
+                        system != quantities::UnitSystem::si ? fmt::format("as above, in {}", in.text)
+                        : in.text.empty()                    ? quantity.meaning
+                                                             : fmt::format("{}; {}", quantity.meaning, in.text)});
     readings_.push_back([number, system, unit = quantity.unit](const Source& run) -> Maybe {
       const Maybe value = number(run);
       const double size = size_of_unit(unit, system, run.units);
@@ -153,17 +160,17 @@ void RunQuantities::add(const Quantity& quantity, const Reading& number) {
   }
 }
 
-void RunQuantities::add_measured(const Quantity& quantity, Record Source::*record) {
-  if (quantity.shape == Shape::number)
+void RunQuantities::add_measured(const quantities::Quantity& quantity, quantities::Record Source::*record) {
+  if (quantity.shape == quantities::Shape::number)
     add(quantity, [record, quantity](const Source& run) { return estimate_in(run.*record, quantity); });
-  else if (quantity.shape == Shape::vector)
+  else if (quantity.shape == quantities::Shape::vector)
     for (const std::size_t axis : {0U, 1U, 2U})
-      if (const Quantity one = quantity.along(axis); !find(one.full_name()))
+      if (const quantities::Quantity one = quantity.along(axis); !find(one.full_name()))
         add(one, [record, axis, name = quantity.name](const Source& run) { return axis_in(run.*record, name, axis); });
 }
 
-void RunQuantities::add_series_mean(const std::string& column, Quantity quantity) {
-  const std::vector<Quantity> of_series = series_quantities();
+void RunQuantities::add_series_mean(const std::string& column, quantities::Quantity quantity) {
+  const std::vector<quantities::Quantity> of_series = runs::series_quantities();
   quantity.meaning = find_quantity(of_series, column)->meaning;
   add(quantity, [column](const Source& run) { return column_mean(run, column); });
 }
@@ -179,23 +186,23 @@ RunNumbers RunQuantities::measure(const fs::path& folder, const Scene& scene, st
   assert(readings_.size() == columns_.size());
   numbers.values.resize(columns_.size());
   Source run;
-  run.series = read_series(folder / "series.csv");
-  run.last = std::move(load_newest_patch(folder).patches.front());
+  run.series = io::read_series(folder / "series.csv");
+  run.last = std::move(runs::load_newest_patch(folder).patches.front());
   numbers.particle_count = run.last.size();
-  const TransportReport report = TransportReport::of_series(
-      run.series, RingScale::of(run.last, !scene.external_forces.empty()), {since, std::nullopt});
+  const runs::TransportReport report = runs::TransportReport::of_series(
+      run.series, runs::RingScale::of(run.last, !scene.external_forces.empty()), {since, std::nullopt});
   if (!report.transport())
     return numbers;
   const double first = report.transport()->since_orbit, until = report.transport()->until_orbit;
   run.rows = rows_between(run.series.of("time_orbits"), first, until);
-  run.units = units_of(run.last);
+  run.units = runs::units_of(run.last);
   run.transport = record_of(report, run.units);
   if (analyzes_ || scene.gravity) {
-    const std::vector<Patch> patches = load_patches(folder, std::max(0.0, run.last.time_orbits - first)).patches;
+    const std::vector<Patch> patches = runs::load_patches(folder, std::max(0.0, run.last.time_orbits - first)).patches;
     if (analyzes_)
-      run.analysis = record_of(keeler::measure(patches, report));
+      run.analysis = record_of(runs::measure(patches, report));
     if (scene.gravity)
-      run.wakes = analyzes_ ? run.analysis : wakes_of(patches);
+      run.wakes = analyzes_ ? run.analysis : runs::wakes_of(patches);
   }
   numbers.since_orbit = first;
   numbers.until_orbit = until;
@@ -205,4 +212,4 @@ RunNumbers RunQuantities::measure(const fs::path& folder, const Scene& scene, st
   return numbers;
 }
 
-} // namespace keeler
+} // namespace keeler::batch

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::batch {
 
 /// A quantity in one unit.
 struct RunColumn {
@@ -46,13 +46,13 @@ public:
 private:
   using Reading = std::function<std::optional<Estimate>(const Source&)>;
 
-  void add(const Quantity& quantity, const Reading& number);
-  void add_measured(const Quantity& quantity, Record Source::*record);
-  void add_series_mean(const std::string& column, Quantity quantity);
+  void add(const quantities::Quantity& quantity, const Reading& number);
+  void add_measured(const quantities::Quantity& quantity, quantities::Record Source::*record);
+  void add_series_mean(const std::string& column, quantities::Quantity quantity);
 
   std::vector<RunColumn> columns_;
   std::vector<Reading> readings_;
   bool analyzes_ = false; ///< a requested quantity needs the full analysis
 };
 
-} // namespace keeler
+} // namespace keeler::batch

@@ -7,7 +7,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::batch {
 namespace {
 
 std::vector<double> values_of(std::span<const Estimate> seeds) {
@@ -20,7 +20,7 @@ std::vector<double> values_of(std::span<const Estimate> seeds) {
 RunRow measured_row(const PlannedRun& run, const RunFolders& folders, const MeasureRun& measure) {
   RunRow row;
   row.run = &run;
-  if (run_stage(folders.run(run.name)) == RunStage::finished) {
+  if (runs::run_stage(folders.run(run.name)) == runs::RunStage::finished) {
     try {
       row.numbers = measure(run, folders.run(run.name));
       row.status = RunStatus::finished;
@@ -42,7 +42,7 @@ Estimate seed_mean(std::span<const Estimate> seeds) {
   assert(!seeds.empty());
   if (seeds.size() == 1)
     return seeds.front();
-  const Scatter scatter = scatter_of(values_of(seeds));
+  const statistics::Scatter scatter = statistics::scatter_of(values_of(seeds));
   return {scatter.mean, scatter.mean_error()};
 }
 
@@ -70,7 +70,7 @@ std::vector<PointRow> point_rows(std::span<const RunRow> runs, std::size_t point
     rows[p].point = p;
     for (const std::vector<Estimate>& column : seeds[p]) {
       rows[p].values.push_back(column.empty() ? std::nullopt : std::optional(seed_mean(column)));
-      rows[p].scatter.push_back(scatter_of(values_of(column)));
+      rows[p].scatter.push_back(statistics::scatter_of(values_of(column)));
     }
   }
   return rows;
@@ -96,4 +96,4 @@ Json row_of(const RunRow& run, const Json& settings) {
   return row;
 }
 
-} // namespace keeler
+} // namespace keeler::batch

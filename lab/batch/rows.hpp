@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::batch {
 
 using Json = nlohmann::ordered_json;
 
@@ -41,7 +41,7 @@ struct PointRow {
   std::size_t point = 0;                            ///< PlannedRun::point
   std::size_t finished = 0, failed = 0, steady = 0; ///< numbers of runs
   std::vector<std::optional<Estimate>> values;      ///< seed_mean(); none: no run has a value
-  std::vector<Scatter> scatter;                     ///< of the seeds
+  std::vector<statistics::Scatter> scatter;         ///< of the seeds
 };
 
 /// Measures a finished run in its folder. Throws Error if it cannot be measured.
@@ -63,4 +63,4 @@ Estimate seed_mean(std::span<const Estimate> seeds);
 /// Returns the first columns of a run's row: run, `settings`, seed, status, reason.
 Json row_of(const RunRow& run, const Json& settings);
 
-} // namespace keeler
+} // namespace keeler::batch

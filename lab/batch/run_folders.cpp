@@ -13,7 +13,7 @@
 #include <set>
 #include <sstream>
 
-namespace keeler {
+namespace keeler::batch {
 namespace {
 
 namespace fs = std::filesystem;
@@ -56,8 +56,8 @@ void refuse_changed_run(const PlannedRun& run, const fs::path& folder, const std
   if (!fs::exists(file, unknown))
     return;
   // Both are resolved by this version of the program: keys that are newer than the run have their defaults.
-  Keys old_keys = keys_of(load_stored_scene(file).resolved);
-  Keys new_keys = keys_of(parse_stored_scene(run.scene.resolved, file.string()).resolved);
+  Keys old_keys = keys_of(scene::load_stored_scene(file).resolved);
+  Keys new_keys = keys_of(scene::parse_stored_scene(run.scene.resolved, file.string()).resolved);
   if (leaves_resting_open(run.scene)) // decided only when its start is read
     new_keys["gravity.resting_contacts"] = old_keys["gravity.resting_contacts"];
   if (const std::string change = difference(old_keys, new_keys); !change.empty())
@@ -102,10 +102,10 @@ std::optional<std::string> RunFolders::failure_of(const std::string& name) const
   std::error_code unknown;
   if (!fs::exists(failure(name), unknown))
     return std::nullopt;
-  std::string reason = read_text(failure(name));
+  std::string reason = files::read_text(failure(name));
   while (!reason.empty() && reason.back() == '\n')
     reason.pop_back();
   return reason;
 }
 
-} // namespace keeler
+} // namespace keeler::batch

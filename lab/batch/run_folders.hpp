@@ -9,7 +9,7 @@
 #include <span>
 #include <string>
 
-namespace keeler {
+namespace keeler::batch {
 
 /// Makes a folder and those above it. Throws IoError.
 void make_folder(const std::filesystem::path& folder);
@@ -41,4 +41,4 @@ private:
   std::filesystem::path path_;
 };
 
-} // namespace keeler
+} // namespace keeler::batch

@@ -21,7 +21,7 @@
 #include <utility>
 #include <vector>
 
-namespace keeler {
+namespace keeler::batch {
 namespace {
 
 namespace fs = std::filesystem;
@@ -58,7 +58,7 @@ std::vector<std::size_t> seed_by_seed(std::span<const PlannedRun> runs) {
 class Workers {
 public:
   Workers(std::span<const PlannedRun> runs, const RunFolders& folders, Claims& claims, const BatchSettings& settings,
-          const RunRequests& requests)
+          const runs::RunRequests& requests)
       : runs_(runs), order_(seed_by_seed(runs)), folders_(folders), claims_(claims), settings_(settings),
         requests_(requests), states_(runs.size()) {
     assert(settings.jobs > 0 && settings.threads_per_run > 0 && settings.progress && settings.notice);
@@ -130,11 +130,11 @@ private:
     State& state = states_[k];
     if (state.child || state.finished || state.failed || !claims_.take(run(k).name))
       return;
-    const RunStage stage = run_stage(path(k));
-    state.finished = stage == RunStage::finished;
+    const runs::RunStage stage = runs::run_stage(path(k));
+    state.finished = stage == runs::RunStage::finished;
     const std::optional<fs::file_time_type> failure = failure_time(k);
     state.failed = !state.finished && failure && failure != state.previous_failure;
-    const bool held = folder_is_held(path(k));
+    const bool held = runs::folder_is_held(path(k));
     if (held)
       nothing_to_wait_for_ = false;
     if (state.finished || state.failed || held)
@@ -143,20 +143,20 @@ private:
       start(k, stage);
   }
 
-  void start(std::size_t k, RunStage stage) {
-    assert(!states_[k].child && stage != RunStage::finished);
+  void start(std::size_t k, runs::RunStage stage) {
+    assert(!states_[k].child && stage != runs::RunStage::finished);
     nothing_to_wait_for_ = false;
     std::error_code ignored; // it may not exist
     fs::remove(folders_.failure(run(k).name), ignored);
     states_[k].previous_failure.reset();
     std::vector<std::string> words;
-    if (stage == RunStage::resumable) {
+    if (stage == runs::RunStage::resumable) {
       words = {"resume", argument_of(path(k))};
     } else {
       const fs::path scene = folders_.scene(run(k).name);
-      write_text(scene, run(k).scene.resolved);
+      files::write_text(scene, run(k).scene.resolved);
       words = {"run", argument_of(scene), "-o", argument_of(path(k))};
-      if (stage == RunStage::begun)
+      if (stage == runs::RunStage::begun)
         words.emplace_back("--force");
     }
     words.insert(words.end(), {"--threads", fmt::format("{}", settings_.threads_per_run)});
@@ -179,13 +179,13 @@ private:
   void record_end(std::size_t k, const ChildEnd& end) {
     assert(!states_[k].child);
     State& state = states_[k];
-    state.finished = run_stage(path(k)) == RunStage::finished;
+    state.finished = runs::run_stage(path(k)) == runs::RunStage::finished;
     if (state.finished || is_stop(end) || requests_.stop)
       return;
     state.failed = true;
     const std::string reason =
         end.message.empty() ? fmt::format("the run ended with exit code {}", end.code) : end.message;
-    write_text(folders_.failure(run(k).name), reason + "\n");
+    files::write_text(folders_.failure(run(k).name), reason + "\n");
     settings_.notice(fmt::format("the run {} failed: {}", run(k).name, reason));
   }
 
@@ -203,8 +203,8 @@ private:
   void refresh() {
     for (std::size_t k = 0; k < states_.size(); ++k)
       if (State& state = states_[k]; !state.finished) {
-        state.finished = !state.child && run_stage(path(k)) == RunStage::finished;
-        state.completed = static_cast<double>(last_recorded_step(path(k))) /
+        state.finished = !state.child && runs::run_stage(path(k)) == runs::RunStage::finished;
+        state.completed = static_cast<double>(runs::last_recorded_step(path(k))) /
                           static_cast<double>(std::max<std::int64_t>(1, run(k).scene.time.end_step));
       }
   }
@@ -240,7 +240,7 @@ private:
   const RunFolders& folders_;
   Claims& claims_;
   const BatchSettings& settings_;
-  const RunRequests& requests_;
+  const runs::RunRequests& requests_;
   std::vector<State> states_; // one per run
   double elapsed_ = 0.0;
   Stopwatch watch_{elapsed_};
@@ -252,8 +252,8 @@ private:
 } // namespace
 
 void work_on(std::span<const PlannedRun> runs, const RunFolders& folders, Claims& claims, const BatchSettings& settings,
-             const RunRequests& requests) {
+             const runs::RunRequests& requests) {
   Workers(runs, folders, claims, settings, requests).work();
 }
 
-} // namespace keeler
+} // namespace keeler::batch

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::batch {
 
 /// The settings of every batch.
 struct BatchSettings {
@@ -31,6 +31,6 @@ struct BatchSettings {
 /// request the runs are stopped, each with a checkpoint. Precondition: settings.jobs > 0, and `progress` and `notice`
 /// are set. Throws IoError, Error.
 void work_on(std::span<const PlannedRun> runs, const RunFolders& folders, Claims& claims, const BatchSettings& settings,
-             const RunRequests& requests);
+             const runs::RunRequests& requests);
 
-} // namespace keeler
+} // namespace keeler::batch

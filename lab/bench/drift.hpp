@@ -8,7 +8,7 @@
 #include <functional>
 #include <string>
 
-namespace keeler {
+namespace keeler::bench {
 
 enum class BenchSizes {
   equal,  ///< all 1 m
@@ -38,4 +38,4 @@ struct DriftBench {
 /// Throws UsageError for an unknown finder or an impossible patch.
 DriftBench bench_drift(const DriftBenchSettings& settings);
 
-} // namespace keeler
+} // namespace keeler::bench

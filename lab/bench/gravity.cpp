@@ -12,10 +12,10 @@
 #include <cmath>
 #include <numeric>
 
-namespace keeler {
+namespace keeler::bench {
 namespace {
 
-constexpr ImageSettings reference_images{2, true};
+constexpr gravity::ImageSettings reference_images{2, true};
 constexpr double reference_pairs = 5e9; // pair forces of the reference, some seconds
 constexpr double min_sample = 500.0, max_sample = 2000.0;
 constexpr double edge_width = 5.0; // m; boxes are wider than 120 m
@@ -26,24 +26,25 @@ constexpr std::size_t max_direct = 10000;    // particles, unless requested by n
 
 // Returns the patch with its particles in the spatial order of a run.
 Patch in_memory_order(const Patch& patch) {
-  const std::vector<std::uint32_t> order = order_by_position(particles_from(patch, 0.0), patch.box, patch.offset);
+  const std::vector<std::uint32_t> order =
+      cells::order_by_position(particles_from(patch, 0.0), patch.box, patch.offset);
   Patch sorted = patch;
-  reorder(sorted.positions, order);
-  reorder(sorted.velocities, order);
-  reorder(sorted.radii, order);
-  reorder(sorted.masses, order);
-  reorder(sorted.ids, order);
+  cells::reorder(sorted.positions, order);
+  cells::reorder(sorted.velocities, order);
+  cells::reorder(sorted.radii, order);
+  cells::reorder(sorted.masses, order);
+  cells::reorder(sorted.ids, order);
   return sorted;
 }
 
-ForceSample sample_of(const GravityProblem& problem) {
+diagnostics::ForceSample sample_of(const gravity::GravityProblem& problem) {
   const double images = std::pow(2.0 * reference_images.rings + 1.0, 2);
   const double affordable = reference_pairs / (images * static_cast<double>(problem.positions.size()));
   const auto even = static_cast<std::size_t>(std::clamp(affordable, min_sample, max_sample));
-  return draw_force_sample(problem, even, std::max(min_at_edge, even / 8), edge_width);
+  return diagnostics::draw_force_sample(problem, even, std::max(min_at_edge, even / 8), edge_width);
 }
 
-std::vector<Vec3> exact_accelerations(const GravityProblem& problem, const ForceSample& sample,
+std::vector<Vec3> exact_accelerations(const gravity::GravityProblem& problem, const diagnostics::ForceSample& sample,
                                       PhaseProgress& progress) {
   const std::span<const std::size_t> targets = sample.targets;
   progress.begin("forces to compare with", static_cast<double>(targets.size()));
@@ -59,8 +60,8 @@ std::vector<Vec3> exact_accelerations(const GravityProblem& problem, const Force
 
 // Returns the time per solve in each repeat, s. An untimed first solve, in which buffers grow, determines the number of
 // solves per repeat.
-std::vector<double> solve_times(GravitySolver& solver, const GravityProblem& problem, std::span<Vec3> accelerations,
-                                int repeats) {
+std::vector<double> solve_times(gravity::GravitySolver& solver, const gravity::GravityProblem& problem,
+                                std::span<Vec3> accelerations, int repeats) {
   assert(repeats > 0 && accelerations.size() == problem.positions.size());
   const double start = bench_seconds();
   solver.accelerate(problem, accelerations);
@@ -102,8 +103,8 @@ GravityBench bench_gravity_of(const Patch& state, const std::vector<GravityChoic
                               PhaseProgress& progress) {
   assert(state.size() > 0);
   const Patch patch = in_memory_order(state);
-  const GravityProblem problem = gravity_problem(patch);
-  const ForceSample sample = sample_of(problem);
+  const gravity::GravityProblem problem = diagnostics::gravity_problem(patch);
+  const diagnostics::ForceSample sample = sample_of(problem);
   GravityBench bench;
   bench.count = patch.size();
   bench.size_x_m = patch.box.size_x;
@@ -117,10 +118,12 @@ GravityBench bench_gravity_of(const Patch& state, const std::vector<GravityChoic
   progress.begin("timing", static_cast<double>(choices.size()));
   std::vector<Vec3> accelerations(bench.count);
   for (const GravityChoice& choice : choices) {
-    const std::unique_ptr<GravitySolver> solver = make_gravity_solver(choice.settings, patch.masses, patch.box.area());
+    const std::unique_ptr<gravity::GravitySolver> solver =
+        make_gravity_solver(choice.settings, patch.masses, patch.box.area());
     const std::vector<double> times = solve_times(*solver, problem, accelerations, repeats);
-    bench.rows.push_back({choice, force_errors(sample, exact, accelerations), net_force(patch.masses, accelerations),
-                          1e9 * median(times) / static_cast<double>(bench.count)});
+    bench.rows.push_back({choice, force_errors(sample, exact, accelerations),
+                          diagnostics::net_force(patch.masses, accelerations),
+                          1e9 * statistics::median(times) / static_cast<double>(bench.count)});
     progress.add(1.0);
   }
   return bench;
@@ -133,4 +136,4 @@ GravityBench bench_gravity(const GravityBenchSettings& settings) {
   return bench_gravity_of(patch, chosen(settings, patch.size()), settings.repeats, progress);
 }
 
-} // namespace keeler
+} // namespace keeler::bench

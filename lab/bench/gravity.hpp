@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace keeler {
+namespace keeler::bench {
 
 struct GravityBenchSettings {
   std::size_t count = 100000; ///< rounded to whole tiles, at least a patch of 2 × 2 λ_cr
@@ -26,8 +26,8 @@ struct GravityBenchSettings {
 /// tree or mesh: processor time on one thread, wall time on several.
 struct GravityBenchRow {
   GravityChoice choice;
-  ForceErrors errors;     ///< relative to the sum over all pairs and images, on the sample
-  double net_force = 0.0; ///< |Σ m a| / Σ m |a|, of all particles
+  diagnostics::ForceErrors errors; ///< relative to the sum over all pairs and images, on the sample
+  double net_force = 0.0;          ///< |Σ m a| / Σ m |a|, of all particles
   double ns_per_particle = 0.0;
 
   /// Returns all numbers with their names in JSON and CSV.
@@ -51,4 +51,4 @@ GravityBench bench_gravity(const GravityBenchSettings& settings);
 GravityBench bench_gravity_of(const Patch& state, const std::vector<GravityChoice>& choices, int repeats,
                               PhaseProgress& progress);
 
-} // namespace keeler
+} // namespace keeler::bench

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace keeler {
+namespace keeler::bench {
 namespace {
 
 GravityChoice tree(double opening_angle) {
@@ -64,7 +64,7 @@ GravityChoice default_gravity_choice(const std::string& solver) {
   if (solver == "direct")
     return direct();
   if (solver == "fft")
-    return fft(cut_for(GravitySettings{}.force_error, 1.0)); // 1: the benches' spheres have equal masses
+    return fft(gravity::cut_for(GravitySettings{}.force_error, 1.0)); // 1: the benches' spheres have equal masses
   if (solver == "mesh")
     return mesh(GravitySettings{}.mesh_spacing);
   throw std::invalid_argument("no gravity solver '" + solver + "'");
@@ -88,4 +88,4 @@ GravityChoice choice_of(const GravitySettings& settings, std::size_t count) {
   return choice;
 }
 
-} // namespace keeler
+} // namespace keeler::bench

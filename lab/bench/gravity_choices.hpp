@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::bench {
 
 /// A solver with settings, and their names in tables.
 struct GravityChoice {
@@ -28,4 +28,4 @@ GravityChoice default_gravity_choice(const std::string& solver);
 /// Returns the choice with these settings; `automatic` is resolved for `count` particles.
 GravityChoice choice_of(const GravitySettings& settings, std::size_t count);
 
-} // namespace keeler
+} // namespace keeler::bench

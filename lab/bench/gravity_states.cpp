@@ -12,7 +12,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::bench {
 namespace {
 
 constexpr double min_wavelengths = 2.0; // side of a tile, λ_cr
@@ -79,11 +79,12 @@ BenchState gravity_state(std::size_t count, GravityState kind, PhaseProgress& pr
   const double side = std::ceil(std::sqrt(asked / (clumped ? largest_clumped_tile : largest_uniform_tile)));
   const long tile_count = std::lround(asked / (side * side));
   BenchState state{a_ring_scene(static_cast<std::size_t>(tile_count), 1), {}};
-  require_memory_for(state.scene, count);
+  advice::require_memory_for(state.scene, count);
   state.patch = clumped ? evolved_with_gravity(state.scene, clumping_orbits, progress) : initial_patch(state.scene);
   if (side > 1.0)
-    state.patch = tiled_patch(state.patch, static_cast<std::size_t>(side), static_cast<std::size_t>(side));
+    state.patch =
+        initial_conditions::tiled_patch(state.patch, static_cast<std::size_t>(side), static_cast<std::size_t>(side));
   return state;
 }
 
-} // namespace keeler
+} // namespace keeler::bench

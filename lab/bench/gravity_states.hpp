@@ -8,7 +8,7 @@
 
 #include <cstdint>
 
-namespace keeler {
+namespace keeler::bench {
 
 enum class GravityState {
   clumped, ///< with wakes, 1.5 orbits after a uniform initial state
@@ -23,4 +23,4 @@ Scene a_ring_scene(std::size_t count, std::uint64_t seed);
 /// continues from it. Precondition: `count` > 0.
 BenchState gravity_state(std::size_t count, GravityState kind, PhaseProgress& progress);
 
-} // namespace keeler
+} // namespace keeler::bench

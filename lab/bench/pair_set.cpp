@@ -6,30 +6,30 @@
 #include <cassert>
 #include <limits>
 
-namespace keeler {
+namespace keeler::bench {
 namespace {
 
 // Records the queries of a step up to its first collision.
-struct Recorder : DriftObserver {
+struct Recorder : collision::DriftObserver {
   explicit Recorder(bool every_candidate) : every_candidate_(every_candidate) {}
   bool wants_every_candidate() const override { return every_candidate_; }
 
-  std::vector<Query> queries;
-  const DriftStep* step = nullptr;
+  std::vector<finders::Query> queries;
+  const finders::DriftStep* step = nullptr;
   bool before_events = true;
 
-  void begins(const DriftStep& now) override { step = &now; }
-  void searched(const Query& query, const FinderResult&) override {
+  void begins(const finders::DriftStep& now) override { step = &now; }
+  void searched(const finders::Query& query, const finders::FinderResult&) override {
     if (before_events)
       queries.push_back(query);
   }
-  void collided(const CollisionRecord&) override { before_events = false; }
+  void collided(const collision::CollisionRecord&) override { before_events = false; }
 
 private:
   bool every_candidate_;
 };
 
-Separation separation(const Pair& pair, const Frequencies& f, double time) {
+finders::Separation separation(const finders::Pair& pair, const Frequencies& f, double time) {
   const Rotation r(f, time);
   const State lo = state_at(pair.lo, f, r), hi = state_at(pair.hi, f, r);
   return {hi.position - lo.position, hi.velocity - lo.velocity};
@@ -46,10 +46,11 @@ template<class Condition> double bisect(double a, double b, const Condition& hol
 
 } // namespace
 
-PairSet PairSet::of(Particles particles, const ShearingBox& box, double offset, const CollisionSettings& settings,
-                    const Frequencies& frequencies, double step, bool every_candidate) {
+PairSet PairSet::of(Particles particles, const ShearingBox& box, double offset,
+                    const collision::CollisionSettings& settings, const Frequencies& frequencies, double step,
+                    bool every_candidate) {
   const std::vector<Body> before = particles.bodies;
-  DriftPhase drift(settings, frequencies, 1.0, step);
+  collision::DriftPhase drift(settings, frequencies, 1.0, step);
   Recorder recorder(every_candidate);
   drift.observe(&recorder);
   CollisionTally tally;
@@ -61,24 +62,24 @@ PairSet PairSet::of(Particles particles, const ShearingBox& box, double offset, 
   return set;
 }
 
-DriftStep PairSet::view() const {
-  DriftStep step = step_;
+finders::DriftStep PairSet::view() const {
+  finders::DriftStep step = step_;
   step.bodies = bodies;
   step.tested = false; // the caller may have changed `bodies`
   return step;
 }
 
-double ns_per_call(const PairSet& pairs, Finder& finder, double min_seconds) {
+double ns_per_call(const PairSet& pairs, finders::Finder& finder, double min_seconds) {
   assert(min_seconds > 0.0);
   if (pairs.queries.empty())
     return 0.0;
-  const DriftStep step = pairs.view();
+  const finders::DriftStep step = pairs.view();
   finder.begin(step);
   double seconds = 0.0, used = 0.0; // `used` prevents the compiler from removing the calls
   std::size_t calls = 0;
   while (seconds < min_seconds) {
     const double start = cpu_seconds();
-    for (const Query& query : pairs.queries)
+    for (const finders::Query& query : pairs.queries)
       used += finder.find(query).time;
     seconds += cpu_seconds() - start;
     calls += pairs.queries.size();
@@ -86,7 +87,7 @@ double ns_per_call(const PairSet& pairs, Finder& finder, double min_seconds) {
   return used == std::numeric_limits<double>::infinity() ? 0.0 : 1e9 * seconds / static_cast<double>(calls);
 }
 
-ScanResult dense_scan(const Pair& pair, const Frequencies& f) {
+ScanResult dense_scan(const finders::Pair& pair, const Frequencies& f) {
   assert(pair.radius_sum > 0.0 && pair.start <= pair.end);
   constexpr int points = 512;
   const auto approaching = [&](double t) { return separation(pair, f, t).closing() < 0.0; };
@@ -94,13 +95,13 @@ ScanResult dense_scan(const Pair& pair, const Frequencies& f) {
   ScanResult result;
   result.closest = std::numeric_limits<double>::infinity();
   double before = pair.start;
-  Separation last = separation(pair, f, before);
+  finders::Separation last = separation(pair, f, before);
   for (int k = 1; k <= points; ++k) {
     const double now = pair.start + (pair.end - pair.start) * k / points;
-    const Separation here = separation(pair, f, now);
+    const finders::Separation here = separation(pair, f, now);
     if (last.closing() < 0.0) {
       const double deepest = here.closing() < 0.0 ? now : bisect(before, now, approaching);
-      const Separation there = separation(pair, f, deepest);
+      const finders::Separation there = separation(pair, f, deepest);
       result.closest = std::min(result.closest, there.d.norm() / pair.radius_sum - 1.0);
       if (there.gap(pair.radius_sum) <= 0.0) {
         result.contact = true;
@@ -114,4 +115,4 @@ ScanResult dense_scan(const Pair& pair, const Frequencies& f) {
   return result;
 }
 
-} // namespace keeler
+} // namespace keeler::bench

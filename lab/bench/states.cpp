@@ -15,7 +15,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::bench {
 namespace {
 
 constexpr double moonlet_radius = 100.0;
@@ -23,7 +23,7 @@ constexpr double moonlet_orbits = 0.5; // relaxation of the particles around a m
 
 // The construction of one kind of state.
 struct Recipe {
-  SizeLaw sizes;
+  particles::SizeLaw sizes;
   const char* table;        // `sizes` as in a scene file
   std::size_t largest_tile; // particles
   double heat;              // initial dispersion relative to equal spheres of the mass-weighted radius
@@ -36,20 +36,21 @@ struct Recipe {
 // particles squeeze out a small one at 10⁴ m rad⁻¹; the short step keeps its path within one periodic image.
 Recipe recipe_for(BenchSizes sizes) {
   if (sizes == BenchSizes::power)
-    return {power_sizes(3.0, 1.0, 100.0),
+    return {particles::power_sizes(3.0, 1.0, 100.0),
             "{ law = \"power\", exponent = 3.0, min = 1.0, max = 100.0 }",
             25000,
             2.0,
             3.0,
             0.0025};
-  return {equal_sizes(1.0), "{ law = \"equal\", radius = 1.0 }", 100000, 1.0, 1.5, 0.01};
+  return {particles::equal_sizes(1.0), "{ law = \"equal\", radius = 1.0 }", 100000, 1.0, 1.5, 0.01};
 }
 
 // Returns the initial c_x, ⟨r⟩ Ω: near the equilibrium's, or larger if the particles could not be placed in so thin a
 // layer. Equilibria of equal spheres at ε = 0.5 have 2.82, 2.18 and 1.62 at τ = 0.1, 0.5 and 1.
 double initial_dispersion(const Recipe& recipe, std::size_t count, double optical_depth) {
-  const SizeLaw& sizes = recipe.sizes;
-  const double placed = 1.001 * dispersion_for_filling(optical_depth, layer_sizes(sizes, count), 1.0, largest_filling);
+  const particles::SizeLaw& sizes = recipe.sizes;
+  const double placed =
+      1.001 * dispersion_for_filling(optical_depth, scene::layer_sizes(sizes, count), 1.0, scene::largest_filling);
   const double mass_radius = sizes.mean_power(3) / sizes.mean_power(2);
   return std::max(3.0 * recipe.heat * mass_radius / sizes.mean_power(1) * std::exp(-0.62 * optical_depth), placed);
 }
@@ -92,7 +93,7 @@ Patch evolved(Scene scene, const Patch& start, double orbits, double step, Phase
 }
 
 // Returns the number of small particles that a moonlet displaces in a layer of this optical depth.
-double covered(double optical_depth, const SizeLaw& sizes) {
+double covered(double optical_depth, const particles::SizeLaw& sizes) {
   return optical_depth * moonlet_radius * moonlet_radius / sizes.mean_power(2);
 }
 
@@ -147,7 +148,7 @@ BenchState bench_state(const DriftBenchSettings& settings, PhaseProgress& progre
   const double side = std::ceil(std::sqrt(count / static_cast<double>(recipe.largest_tile)));
   const double tile_count = std::max(1.0, std::round(count / (side * side)));
   BenchState state{tile_scene(recipe, static_cast<std::size_t>(tile_count), settings), {}};
-  require_memory_for(state.scene, settings.count);
+  advice::require_memory_for(state.scene, settings.count);
   if (moonlet)
     require_room_for_moonlet(side * state.scene.size_x);
 
@@ -155,11 +156,12 @@ BenchState bench_state(const DriftBenchSettings& settings, PhaseProgress& progre
   progress.begin("preparing an equilibrium", particle_orbits / recipe.step);
   state.patch = evolved(state.scene, initial_patch(state.scene), recipe.orbits, recipe.step, progress);
   if (side > 1.0)
-    state.patch = tiled_patch(state.patch, static_cast<std::size_t>(side), static_cast<std::size_t>(side));
+    state.patch =
+        initial_conditions::tiled_patch(state.patch, static_cast<std::size_t>(side), static_cast<std::size_t>(side));
   if (moonlet)
     state.patch =
         evolved(state.scene, with_moonlet(state.patch, moonlet_radius), moonlet_orbits, recipe.step, progress);
   return state;
 }
 
-} // namespace keeler
+} // namespace keeler::bench

@@ -9,7 +9,7 @@
 #include <keeler/particles/patch.hpp>
 #include <keeler/scene/scene.hpp>
 
-namespace keeler {
+namespace keeler::bench {
 
 /// A patch and the scene that continues from it, with the requested finder and step. The scene's box and count are the
 /// tile's; only a new initial state would use them.
@@ -27,4 +27,4 @@ BenchState bench_state(const DriftBenchSettings& settings, PhaseProgress& progre
 /// + the largest radius).
 Patch with_moonlet(const Patch& patch, double radius);
 
-} // namespace keeler
+} // namespace keeler::bench

@@ -14,20 +14,20 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::bench {
 namespace {
 
 constexpr double max_steps = 100.0; // per repeat
 
 BenchState stored_state(const std::string& file) {
-  Snapshot snapshot = read_snapshot(file);
-  BenchState state{parse_stored_scene(snapshot.meta.scene, file), {}};
+  io::Snapshot snapshot = io::read_snapshot(file);
+  BenchState state{scene::parse_stored_scene(snapshot.meta.scene, file), {}};
   if (!state.scene.gravity)
     throw UsageError(
         fmt::format("'{}' has a scene without self-gravity (the scene has no [gravity]); use a snapshot of a run "
                     "with gravity, or time the drift alone with \"keeler bench drift\"",
                     file));
-  state.patch = patch_from_snapshot(std::move(snapshot.patch), file, state.scene);
+  state.patch = initial_conditions::patch_from_snapshot(std::move(snapshot.patch), file, state.scene);
   return state;
 }
 
@@ -50,14 +50,14 @@ GravityChoice choice_for(const StepBenchSettings& settings, const BenchState& st
 // Throws when the ranks have different requests. Each rank read its command line and made its scene itself; only the
 // particles come from rank 0.
 void require_same_bench(const StepBenchSettings& settings, const BenchState& state, const GravityChoice& choice) {
-  std::vector<RequestEntry> request = {{"--count", fmt::format("{}", settings.count)},
-                                       {"--repeats", fmt::format("{}", settings.repeats)},
-                                       {"--solver", choice.solver},
-                                       {"--kick-every", fmt::format("{}", choice.settings.kick_every)},
-                                       {"the solver's settings", choice.text},
-                                       {"particles", fmt::format("{}", state.patch.size())}};
+  std::vector<comm::RequestEntry> request = {{"--count", fmt::format("{}", settings.count)},
+                                             {"--repeats", fmt::format("{}", settings.repeats)},
+                                             {"--solver", choice.solver},
+                                             {"--kick-every", fmt::format("{}", choice.settings.kick_every)},
+                                             {"the solver's settings", choice.text},
+                                             {"particles", fmt::format("{}", state.patch.size())}};
   settings.ranks.together([&] {
-    for (const KeyInForce& key : keys_in_force(state.scene))
+    for (const scene::KeyInForce& key : keys_in_force(state.scene))
       request.push_back({key.path, key.value});
   });
   require_same_request(request, settings.ranks);
@@ -83,7 +83,8 @@ StepBench bench_step(const StepBenchSettings& settings) {
   require_same_bench(settings, state, bench.choice);
   state.scene.gravity = bench.choice.settings;
   bench.step_orbits = state.scene.time.step;
-  bench.dispersion_r_omega = velocity_in_radii(state.patch, velocity_dispersion(state.patch)).x();
+  bench.dispersion_r_omega =
+      diagnostics::velocity_in_radii(state.patch, diagnostics::velocity_dispersion(state.patch)).x();
   const int kick_every = bench.choice.settings.kick_every;
   const int steps = whole_intervals(steps_worth_timing(state.patch.size(), bench.step_orbits, max_steps), kick_every);
 
@@ -96,4 +97,4 @@ StepBench bench_step(const StepBenchSettings& settings) {
   return bench;
 }
 
-} // namespace keeler
+} // namespace keeler::bench

@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-namespace keeler {
+namespace keeler::bench {
 
 struct StepBenchSettings {
   std::size_t count = 100000;        ///< rounded to whole tiles, at least a patch of 2 × 2 λ_cr
@@ -35,4 +35,4 @@ struct StepBench {
 /// patch_from_snapshot() and Simulation throw.
 StepBench bench_step(const StepBenchSettings& settings);
 
-} // namespace keeler
+} // namespace keeler::bench

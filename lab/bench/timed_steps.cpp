@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace keeler {
+namespace keeler::bench {
 namespace {
 
 constexpr int untimed_steps = 10;
@@ -25,8 +25,8 @@ struct Clocks {
   double build, reject, solve, events;
 
   explicit Clocks(Simulation& simulation) {
-    const TimeSplit& split = simulation.time_split();
-    const DriftCosts costs = simulation.drift().costs();
+    const simulation::TimeSplit& split = simulation.time_split();
+    const collision::DriftCosts costs = simulation.drift().costs();
     drift = split.drift - split.advance;
     advance = split.advance;
     gravity = -split.kick;
@@ -81,7 +81,10 @@ struct Gains {
     gravity.push_back(gain(&Clocks::gravity));
   }
 
-  Speedups medians() const { return {median(step), median(drift), median(events), median(gravity), median(pair)}; }
+  Speedups medians() const {
+    return {statistics::median(step), statistics::median(drift), statistics::median(events),
+            statistics::median(gravity), statistics::median(pair)};
+  }
 };
 
 void take_times(const std::vector<Lap>& laps, TimedSteps& timed) {
@@ -89,7 +92,7 @@ void take_times(const std::vector<Lap>& laps, TimedSteps& timed) {
     std::vector<double> seconds;
     for (const Lap& lap : laps)
       seconds.push_back(lap.seconds(clock));
-    return 1e9 * median(seconds) / (static_cast<double>(timed.count) * timed.steps);
+    return 1e9 * statistics::median(seconds) / (static_cast<double>(timed.count) * timed.steps);
   };
   timed.ns_per_particle_step = ns(timed.ranks > 1 ? &Clocks::wall : &Clocks::whole);
   timed.split = {ns(&Clocks::drift), ns(&Clocks::advance), ns(&Clocks::gravity), ns(&Clocks::kick)};
@@ -99,7 +102,7 @@ void take_times(const std::vector<Lap>& laps, TimedSteps& timed) {
 // All counts of a run at one moment.
 struct Counts {
   CollisionTally tally;
-  DriftCosts costs;
+  collision::DriftCosts costs;
 
   explicit Counts(Simulation& simulation) : tally(simulation.state().collisions), costs(simulation.drift().costs()) {}
 };
@@ -112,8 +115,9 @@ void add_over_ranks(const Communicator& ranks, TimedSteps& timed) {
 }
 
 // Returns the communication since `before`, as means over the ranks.
-ExchangeSplit exchange_since(const ExchangeCosts& before, const Communicator& ranks, double steps, std::size_t count) {
-  const ExchangeCosts after = exchange_costs(); // read before the sums below add to them
+ExchangeSplit exchange_since(const comm::ExchangeCosts& before, const Communicator& ranks, double steps,
+                             std::size_t count) {
+  const comm::ExchangeCosts after = comm::exchange_costs(); // read before the sums below add to them
   const double each_step = 1.0 / (steps * static_cast<double>(ranks.size()));
   const auto total = [&](std::uint64_t number) { return static_cast<double>(ranks.sum(number)) * each_step; };
   const std::uint64_t messages = after.messages - before.messages, bytes = after.bytes - before.bytes;
@@ -177,7 +181,7 @@ TimedSteps time_steps(Simulation& simulation, int steps, int repeats, int kick_e
     pair.push_back(pair_yardstick());
     const Counts before(simulation);
     ranks.any(false); // barrier: all ranks begin together
-    const ExchangeCosts exchanged = exchange_costs();
+    const comm::ExchangeCosts exchanged = comm::exchange_costs();
     laps.push_back(run(simulation, steps));
     timed.exchange += exchange_since(exchanged, ranks, steps * repeats, timed.count);
     add_counts(before, Counts(simulation), timed);
@@ -189,10 +193,10 @@ TimedSteps time_steps(Simulation& simulation, int steps, int repeats, int kick_e
   }
   take_times(laps, timed);
   add_over_ranks(ranks, timed);
-  timed.yardsticks = {median(line), median(pair)};
+  timed.yardsticks = {statistics::median(line), statistics::median(pair)};
   if (ranks.is_root() && (ranks.distributed() || threads() > 1))
     timed.speedup = gains.medians();
   return timed;
 }
 
-} // namespace keeler
+} // namespace keeler::bench

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace keeler {
+namespace keeler::bench {
 
 /// Wall time of the parts of a step, ns per particle and step. Their sum is the step except for small gaps between
 /// them.
@@ -92,4 +92,4 @@ double steps_worth_timing(std::size_t count, double step, double limit);
 TimedSteps time_steps(Simulation& simulation, int steps, int repeats, int kick_every, PhaseProgress& progress,
                       Simulation* alone = nullptr);
 
-} // namespace keeler
+} // namespace keeler::bench

@@ -7,7 +7,7 @@
 #include <cassert>
 #include <chrono>
 
-namespace keeler {
+namespace keeler::bench {
 namespace {
 
 constexpr double min_yardstick_seconds = 0.03; // of work per measurement
@@ -96,4 +96,4 @@ double pair_yardstick(double (*clock)()) {
   return 1e9 * seconds_of(pass, clock) / static_cast<double>(sums.size() * rounds * orbit_count);
 }
 
-} // namespace keeler
+} // namespace keeler::bench

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::bench {
 
 /// Returns processor time when threads() is 1, otherwise wall time; s since an arbitrary origin.
 double bench_seconds();
@@ -28,4 +28,4 @@ private:
 /// precision; all data stay in the fastest cache. Returns the time per pair, ns.
 double pair_yardstick(double (*clock)() = bench_seconds);
 
-} // namespace keeler
+} // namespace keeler::bench

@@ -10,18 +10,18 @@
 #include <optional>
 #include <vector>
 
-namespace keeler {
+namespace keeler::run_report {
 namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-std::string number(const Record& summary, const std::string& name, int digits = 3) {
+std::string number(const quantities::Record& summary, const std::string& name, int digits = 3) {
   const std::optional<double> value = number_in(summary, name);
   return value ? format_number(*value, digits) : "not measured";
 }
 
 // Returns "12 s, 31 % of the time".
-std::string cost(const Record& summary, const std::string& part) {
+std::string cost(const quantities::Record& summary, const std::string& part) {
   const double wall = number_in(summary, "wall").value_or(0.0),
                seconds = number_in(summary, "split." + part).value_or(0.0);
   return wall > 0.0 ? fmt::format("{} s, {} % of the time", format_number(seconds, 3),
@@ -29,11 +29,11 @@ std::string cost(const Record& summary, const std::string& part) {
                     : format_number(seconds, 3) + " s";
 }
 
-void add_gravity(Rows& rows, const Scene& scene, const Record& summary) {
+void add_gravity(Rows& rows, const Scene& scene, const quantities::Record& summary) {
   if (!scene.gravity)
     return;
   const double count = number_in(summary, "particle_count").value_or(0.0);
-  rows.push_back({"self-gravity", in_words(chosen_for(static_cast<std::size_t>(count), *scene.gravity)),
+  rows.push_back({"self-gravity", advice::in_words(chosen_for(static_cast<std::size_t>(count), *scene.gravity)),
                   number_in(summary, "force_error.rms")
                       ? fmt::format("rms error of the forces {} of the rms force (worst of {} checks: {})",
                                     number(summary, "force_error.rms"), number(summary, "force_error.checks"),
@@ -44,7 +44,7 @@ void add_gravity(Rows& rows, const Scene& scene, const Record& summary) {
 
 } // namespace
 
-std::string accuracy_table(const Scene& scene, const Record& summary) {
+std::string accuracy_table(const Scene& scene, const quantities::Record& summary) {
   Rows rows = {{"part", "method", "accuracy", "cost"}};
   rows.push_back({"contacts", "finder " + scene.collisions.finder,
                   fmt::format("largest overlap {} of a radius sum; contacts slower than the speed from one kick "
@@ -62,13 +62,13 @@ std::string accuracy_table(const Scene& scene, const Record& summary) {
         {"energy, of the steady part", "viscosity from the loss over that of the stresses; 1 is exact",
          fmt::format("{} ± {}", number(summary, "energy_balance.ratio", 4), number(summary, "energy_balance.error", 2)),
          cost(summary, "stresses")});
-  return html_table(rows);
+  return report::html_table(rows);
 }
 
-std::string timing_table(const Record& summary) {
+std::string timing_table(const quantities::Record& summary) {
   Rows rows = {{"part", "wall time, s", "fraction"}};
   const double wall = number_in(summary, "wall").value_or(0.0);
-  for (const Entry& entry : summary.entries)
+  for (const quantities::Entry& entry : summary.entries)
     if (const double seconds = number_in(summary, entry.quantity.name).value_or(0.0);
         seconds > 0.0 && entry.quantity.name.starts_with("split.")) {
       std::string part = entry.quantity.name.substr(6);
@@ -77,7 +77,7 @@ std::string timing_table(const Record& summary) {
           {part, format_number(seconds, 3), wall > 0.0 ? fmt::format("{:.1f} %", 100.0 * seconds / wall) : ""});
     }
   rows.push_back({"**all**", format_number(wall, 4), ""});
-  return html_table(rows);
+  return report::html_table(rows);
 }
 
-} // namespace keeler
+} // namespace keeler::run_report

@@ -6,12 +6,12 @@
 
 #include <string>
 
-namespace keeler {
+namespace keeler::run_report {
 
 /// Returns a table of the approximations, their errors and their fractions of the wall time. `summary` is summary.json.
-std::string accuracy_table(const Scene& scene, const Record& summary);
+std::string accuracy_table(const Scene& scene, const quantities::Record& summary);
 
 /// Returns a table of the wall time by parts.
-std::string timing_table(const Record& summary);
+std::string timing_table(const quantities::Record& summary);
 
-} // namespace keeler
+} // namespace keeler::run_report

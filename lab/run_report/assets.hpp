@@ -4,9 +4,9 @@
 #include <string>
 #include <string_view>
 
-namespace keeler {
+namespace keeler::run_report {
 
 /// Returns the content of an embedded file, as "view.js"; empty if the program was built without it.
 std::string_view asset(const std::string& file);
 
-} // namespace keeler
+} // namespace keeler::run_report

@@ -13,7 +13,7 @@
 #include <cassert>
 #include <vector>
 
-namespace keeler {
+namespace keeler::run_report {
 
 namespace {
 using Rows = std::vector<std::vector<std::string>>;
@@ -21,36 +21,36 @@ using Rows = std::vector<std::vector<std::string>>;
 
 std::string derived_table(const Scene& scene, const Patch& patch) {
   assert(patch.size() > 0);
-  const double wavelength = critical_wavelength(patch);
-  const double density = material_density(patch);
+  const double wavelength = diagnostics::critical_wavelength(patch);
+  const double density = diagnostics::material_density(patch);
   const auto text = [](double value) { return format_number(value, 4); };
   Rows rows = {{"derived", ""}};
   rows.push_back({"box", fmt::format("{} m × {} m = {} × {} λ_cr", text(patch.box.size_x), text(patch.box.size_y),
                                      text(patch.box.size_x / wavelength), text(patch.box.size_y / wavelength))});
   rows.push_back({"orbital frequency Ω", text(patch.orbital_frequency) + " rad/s"});
   rows.push_back({"κ/Ω, ν/Ω", text(patch.frequencies.kappa) + ", " + text(patch.frequencies.nu)});
-  rows.push_back(
-      {"mean radius, density of the material", fmt::format("{} m, {} kg/m³", text(mean_radius(patch)), text(density))});
-  rows.push_back({"Hill parameter r_h", text(hill_parameter(density, distance_from_saturn(scene.planet)))});
+  rows.push_back({"mean radius, density of the material",
+                  fmt::format("{} m, {} kg/m³", text(diagnostics::mean_radius(patch)), text(density))});
+  rows.push_back({"Hill parameter r_h", text(scene::hill_parameter(density, distance_from_saturn(scene.planet)))});
   if (!scene.time.automatic)
     rows.push_back({"step", text(scene.time.step) + " orbits"});
   if (scene.gravity)
     rows.push_back({"drifts per kick", fmt::format("{}", scene.gravity->kick_every)});
-  return html_table(rows);
+  return report::html_table(rows);
 }
 
-std::string measured_table(const Record& numbers) {
+std::string measured_table(const quantities::Record& numbers) {
   Rows rows = table_of(numbers);
   rows.insert(rows.begin(), {"quantity", "value"});
-  return html_table(rows);
+  return report::html_table(rows);
 }
 
-std::string all_numbers(const Record& numbers) {
+std::string all_numbers(const quantities::Record& numbers) {
   Rows rows = {{"name", "value"}};
   const nlohmann::ordered_json flat = json_of(numbers).flatten();
   for (const auto& [path, value] : flat.items())
     rows.push_back({path.substr(1), value.is_null() ? "unknown" : json_text(value)});
-  return html_table(rows);
+  return report::html_table(rows);
 }
 
-} // namespace keeler
+} // namespace keeler::run_report

@@ -7,15 +7,15 @@
 
 #include <string>
 
-namespace keeler {
+namespace keeler::run_report {
 
 /// Returns the quantities that follow from the scene and the patch of a run. Precondition: the patch is not empty.
 std::string derived_table(const Scene& scene, const Patch& patch);
 
 /// Returns the numbers of `keeler analyze`, with errors.
-std::string measured_table(const Record& numbers);
+std::string measured_table(const quantities::Record& numbers);
 
 /// Returns all numbers, by their names in `keeler analyze --json`.
-std::string all_numbers(const Record& numbers);
+std::string all_numbers(const quantities::Record& numbers);
 
-} // namespace keeler
+} // namespace keeler::run_report

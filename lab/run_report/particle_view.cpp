@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <span>
 
-namespace keeler {
+namespace keeler::run_report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -21,7 +21,7 @@ constexpr std::size_t bar_colour_count = 256;
 
 // The view reads little-endian numbers.
 template<class T> std::string base64_of(const std::vector<T>& values) {
-  return base64(std::as_bytes(std::span(values)));
+  return report::base64(std::as_bytes(std::span(values)));
 }
 
 // Returns `count` of the values, evenly spaced.
@@ -57,7 +57,7 @@ struct Grid {
   }
 };
 
-std::vector<std::uint8_t> colour_indices(const std::vector<double>& values, const ColourRange& range) {
+std::vector<std::uint8_t> colour_indices(const std::vector<double>& values, const render::ColourRange& range) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(values.size());
   for (const double value : values)
@@ -69,7 +69,7 @@ bool all_equal(const std::vector<double>& values) {
   return std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) == values.end();
 }
 
-Json numbers_of_range(const ColourRange& range) {
+Json numbers_of_range(const render::ColourRange& range) {
   return {{"low", range.low}, {"middle", range.middle()}, {"high", range.high}};
 }
 
@@ -77,9 +77,9 @@ Json numbers_of_range(const ColourRange& range) {
 
 // Heights follow from the positions and sizes do not change, so neither is stored per snapshot.
 void ParticleView::choose_fields(const Patch& patch) {
-  fields_ = {{"speed", ColourField::speed, {}}, {"cluster", ColourField::cluster, {}}};
+  fields_ = {{"speed", render::ColourField::speed, {}}, {"cluster", render::ColourField::cluster, {}}};
   if (!patch.spins.empty())
-    fields_.push_back({"spin", ColourField::spin, {}});
+    fields_.push_back({"spin", render::ColourField::spin, {}});
 }
 
 void ParticleView::add(const Patch& patch, const std::string& file) {
@@ -98,10 +98,10 @@ void ParticleView::add(const Patch& patch, const std::string& file) {
   Shown shown{file, patch.time_orbits, thinned(patch.positions, count), {}};
   for (Field& f : fields_) {
     const std::vector<double> values = field_values(patch, f.field);
-    const ColourRange range = colour_range(values, f.field);
-    f.range =
-        first ? range
-              : ColourRange{std::min(f.range.low, range.low), std::max(f.range.high, range.high), range.logarithmic};
+    const render::ColourRange range = colour_range(values, f.field);
+    f.range = first ? range
+                    : render::ColourRange{std::min(f.range.low, range.low), std::max(f.range.high, range.high),
+                                          range.logarithmic};
     shown.values.push_back(thinned(values, count));
   }
   snapshots_.push_back(std::move(shown));
@@ -117,9 +117,9 @@ Json ParticleView::fields() const {
     all.push_back(field);
   }
   if (!all_equal(radii_)) {
-    const ColourRange range = colour_range(radii_, ColourField::size);
+    const render::ColourRange range = colour_range(radii_, render::ColourField::size);
     all.push_back({{"name", "size"},
-                   {"label", label_of(ColourField::size)},
+                   {"label", label_of(render::ColourField::size)},
                    {"range", numbers_of_range(range)},
                    {"bytes", {base64_of(colour_indices(radii_, range))}}});
   }
@@ -138,8 +138,8 @@ Json ParticleView::json() const {
   json["low_m"] = {grid.low.x(), grid.low.y(), grid.low.z()};
   json["unit_m"] = {grid.unit(0), grid.unit(1), grid.unit(2)};
   json["radii"] = base64_of(std::vector<float>(radii_.begin(), radii_.end()));
-  json["colours"] = base64_of(bar_colours(bar_colour_count));
-  json["height_label"] = label_of(ColourField::height);
+  json["colours"] = base64_of(render::bar_colours(bar_colour_count));
+  json["height_label"] = label_of(render::ColourField::height);
   json["fields"] = fields();
   for (const Shown& shown : snapshots_)
     json["snapshots"].push_back({{"file", shown.file},
@@ -148,4 +148,4 @@ Json ParticleView::json() const {
   return json;
 }
 
-} // namespace keeler
+} // namespace keeler::run_report

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::run_report {
 
 class ParticleView {
 public:
@@ -37,8 +37,8 @@ private:
   };
   struct Field {
     const char* name;
-    ColourField field;
-    ColourRange range; // over all snapshots
+    render::ColourField field;
+    render::ColourRange range; // over all snapshots
   };
 
   void choose_fields(const Patch& patch);
@@ -51,4 +51,4 @@ private:
   std::vector<Shown> snapshots_;
 };
 
-} // namespace keeler
+} // namespace keeler::run_report

@@ -35,7 +35,7 @@
 #include <utility>
 #include <vector>
 
-namespace keeler {
+namespace keeler::run_report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -75,7 +75,7 @@ std::string folded(const std::string& title, const std::string& content) {
 }
 
 std::string note(const std::string& text) {
-  return "<p>" + html_inline(text) + "</p>\n";
+  return "<p>" + report::html_inline(text) + "</p>\n";
 }
 
 bool has_view() {
@@ -87,7 +87,7 @@ bool has_plots() {
 }
 
 // Draws a patch, reducing look.width until the picture has at most `bytes` bytes or the minimum width.
-std::vector<std::byte> picture_within(std::size_t bytes, const Patch& patch, PictureOptions& look) {
+std::vector<std::byte> picture_within(std::size_t bytes, const Patch& patch, render::PictureOptions& look) {
   for (;;) {
     std::vector<std::byte> png = patch_png(patch, look);
     if (png.size() <= bytes || look.width <= min_embedded_width)
@@ -110,14 +110,14 @@ void thin_out(std::vector<Patch>& patches) {
 std::string figure(const Patch& patch, const std::vector<std::byte>& png) {
   return fmt::format("<figure><img alt=\"the patch at orbit {0}\" src=\"data:image/png;base64,{1}\">"
                      "<figcaption>orbit {0}</figcaption></figure>\n",
-                     format_number(patch.time_orbits, 4), base64(png));
+                     format_number(patch.time_orbits, 4), report::base64(png));
 }
 
 class RunPage {
 public:
   RunPage(const fs::path& folder, const RunReportOptions& options)
-      : folder_(folder), max_snapshots_(options.snapshots), progress_(options.progress), run_(view_run(folder)),
-        files_(snapshots_in(folder)) {}
+      : folder_(folder), max_snapshots_(options.snapshots), progress_(options.progress), run_(runs::view_run(folder)),
+        files_(runs::snapshots_in(folder)) {}
 
   std::string html();
 
@@ -125,8 +125,8 @@ private:
   void read_snapshots();
   std::string pictures();
   std::string view() const;
-  std::string plots(const TransportReport& transport) const;
-  std::string measured(MeasuredPart part);
+  std::string plots(const runs::TransportReport& transport) const;
+  std::string measured(runs::MeasuredPart part);
   std::string accuracy() const;
   std::string scene_section() const;
   std::string provenance() const;
@@ -136,13 +136,13 @@ private:
   fs::path folder_;
   std::size_t max_snapshots_; // in the view
   PhaseProgress progress_;
-  RunView run_;
+  runs::RunView run_;
   std::vector<fs::path> files_;
   ParticleView particles_{max_particles_in_view};
   std::vector<Patch> pictured_;
-  SnapshotMeta meta_; // of the newest snapshot
+  io::SnapshotMeta meta_; // of the newest snapshot
   std::optional<Scene> scene_;
-  std::optional<Record> summary_; // none while the run is in progress, or after it was killed
+  std::optional<quantities::Record> summary_; // none while the run is in progress, or after it was killed
 };
 
 void RunPage::read_snapshots() {
@@ -151,24 +151,24 @@ void RunPage::read_snapshots() {
   progress_.begin("snapshots", static_cast<double>(viewed.size()));
   for (std::size_t k = 0; k < viewed.size(); ++k) {
     const fs::path& file = files_[viewed[k]];
-    Snapshot snapshot = read_snapshot(file);
-    require_possible(snapshot.patch, file.string());
+    io::Snapshot snapshot = io::read_snapshot(file);
+    initial_conditions::require_possible(snapshot.patch, file.string());
     particles_.add(snapshot.patch, file.filename().string());
     meta_ = std::move(snapshot.meta);
     if (std::find(drawn.begin(), drawn.end(), k) != drawn.end())
       pictured_.push_back(std::move(snapshot.patch));
     progress_.add(1.0);
   }
-  scene_ = parse_stored_scene(meta_.scene, files_.back().string());
+  scene_ = scene::parse_stored_scene(meta_.scene, files_.back().string());
 }
 
 // Draws the newest snapshot large and earlier ones small, all at one scale. Precondition: read_snapshots() was called.
 std::string RunPage::pictures() {
   assert(!pictured_.empty() && scene_);
-  PictureOptions look;
+  render::PictureOptions look;
   look.title = scene_->title.empty() ? "Ring patch" : scene_->title;
   for (const Patch& patch : pictured_) {
-    const PictureScale scale = picture_scale(patch, look.colour);
+    const render::PictureScale scale = picture_scale(patch, look.colour);
     if (look.scale)
       look.scale->include(scale);
     else
@@ -195,13 +195,13 @@ std::string RunPage::view() const {
          data_element("view-data", particles_.json());
 }
 
-std::string RunPage::plots(const TransportReport& report) const {
+std::string RunPage::plots(const runs::TransportReport& report) const {
   if (run_.series.rows() < 2)
     return section("series", "Through time", note("The series has fewer than two rows."));
   if (!has_plots())
     return section("series", "Through time",
                    note("This program was built without the library dygraphs, so the series is not drawn here."));
-  const std::optional<Transport> steady = steady_part(report);
+  const std::optional<runs::Transport> steady = steady_part(report);
   std::string words = "No steady part of the run was detected, so no means are given.";
   if (steady)
     words = fmt::format(
@@ -213,15 +213,16 @@ std::string RunPage::plots(const TransportReport& report) const {
     words += fmt::format(" Axisymmetric waves as long as the box hold {}.", describe(*steady->waves));
   words += " Curves are means over consecutive rows, bands their standard errors where a mean is over several "
            "rows. Drag along an axis to zoom, double-click to see all.";
-  const RingScale scale = RingScale::of(pictured_.back(), !scene_->external_forces.empty());
+  const runs::RingScale scale = runs::RingScale::of(pictured_.back(), !scene_->external_forces.empty());
   return section("series", "Through time", note(words) + "<div id=\"plots\"></div>\n") +
          data_element("series-data", series_plots(run_.series, scale, steady));
 }
 
-std::string RunPage::measured(MeasuredPart part) {
+std::string RunPage::measured(runs::MeasuredPart part) {
   thin_out(part.stored.patches);
   progress_.begin("measuring", 2.0 * static_cast<double>(part.stored.patches.size()));
-  const Record numbers = record_of(measure(part.stored.patches, part.transport, {}, [this] { progress_.add(2.0); }));
+  const quantities::Record numbers =
+      record_of(measure(part.stored.patches, part.transport, {}, [this] { progress_.add(2.0); }));
   return section(
       "measured", "Measured",
       note(fmt::format("The numbers of `keeler analyze`: structure from {}; viscosities and the balance over the "
@@ -252,20 +253,20 @@ std::string RunPage::scene_section() const {
   std::string words;
   for (const std::string& notice : scene_->notices)
     words += note("Note: " + notice);
-  PatchScale scale = scale_of(last);
+  scene::PatchScale scale = initial_conditions::scale_of(last);
   scale.start = {}; // the warnings on initial states do not apply to a later state
-  for (const std::string& warning : warnings(*scene_, scale))
+  for (const std::string& warning : advice::warnings(*scene_, scale))
     words += note("Note: " + warning);
   return section("scene", "The scene",
                  derived_table(*scene_, last) + words +
-                     folded("The resolved scene, all keys", "<pre>" + html_text(meta_.scene) + "</pre>\n"));
+                     folded("The resolved scene, all keys", "<pre>" + report::html_text(meta_.scene) + "</pre>\n"));
 }
 
 std::string RunPage::provenance() const {
   std::vector<std::vector<std::string>> rows = {{"the newest snapshot was made by", ""}};
   for (const auto& [name, value] : meta_.provenance)
     rows.push_back({name, value});
-  if (const Value* const hash = summary_ ? find_value(*summary_, "state_hash") : nullptr)
+  if (const quantities::Value* const hash = summary_ ? find_value(*summary_, "state_hash") : nullptr)
     if (const auto* const text = std::get_if<std::string>(hash))
       rows.push_back({"state hash", *text});
   rows.push_back({"this page by", "keeler " + program_version()});
@@ -273,11 +274,11 @@ std::string RunPage::provenance() const {
     rows.push_back({"with three.js", "© 2010–2019 the three.js authors, MIT licence, threejs.org"});
   if (has_plots())
     rows.push_back({"with dygraphs", "© Dan Vanderkam and others, MIT licence, dygraphs.com"});
-  return section("provenance", "Provenance", html_table(rows));
+  return section("provenance", "Provenance", report::html_table(rows));
 }
 
 std::string RunPage::facts() const {
-  const Value* const value = summary_ ? find_value(*summary_, "finished") : nullptr;
+  const quantities::Value* const value = summary_ ? find_value(*summary_, "finished") : nullptr;
   const bool* const finished = value ? std::get_if<bool>(value) : nullptr;
   const std::string state = run_.running            ? "in progress"
                             : !summary_             ? "interrupted"
@@ -293,7 +294,7 @@ std::string RunPage::head() const {
     styles += asset(name);
   return fmt::format("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
                      "content=\"width=device-width\">\n<title>{}</title>\n<style>\n{}</style></head>\n",
-                     html_text(scene_->title.empty() ? folder_.string() : scene_->title), styles);
+                     report::html_text(scene_->title.empty() ? folder_.string() : scene_->title), styles);
 }
 
 std::string scripts() {
@@ -306,10 +307,10 @@ std::string scripts() {
 std::string RunPage::html() {
   read_snapshots();
   if (fs::exists(folder_ / "summary.json"))
-    summary_ = read_summary(folder_);
-  MeasuredPart part = measured_part(folder_, {});
+    summary_ = runs::read_summary(folder_);
+  runs::MeasuredPart part = runs::measured_part(folder_, {});
   const std::string title = scene_->title.empty() ? folder_.filename().string() : scene_->title;
-  std::string page = head() + "<body>\n<h1>" + html_text(title) + "</h1>\n" + facts();
+  std::string page = head() + "<body>\n<h1>" + report::html_text(title) + "</h1>\n" + facts();
   page += pictures();
   page += view() + plots(part.transport);
   page += measured(std::move(part));
@@ -323,4 +324,4 @@ std::string run_report(const fs::path& folder, const RunReportOptions& options) 
   return RunPage(folder, options).html();
 }
 
-} // namespace keeler
+} // namespace keeler::run_report

@@ -9,7 +9,7 @@
 #include <functional>
 #include <string>
 
-namespace keeler {
+namespace keeler::run_report {
 
 inline constexpr std::size_t max_particles_in_view = 100'000; ///< of more, the view shows this many, evenly by id
 
@@ -22,4 +22,4 @@ struct RunReportOptions {
 /// snapshot.
 std::string run_report(const std::filesystem::path& folder, const RunReportOptions& options = {});
 
-} // namespace keeler
+} // namespace keeler::run_report

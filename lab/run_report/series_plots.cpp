@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::run_report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -22,7 +22,7 @@ constexpr std::size_t max_points = 200; // per curve
 
 struct Curve {
   std::string column, name;
-  ColumnKind kind = ColumnKind::value;
+  runs::ColumnKind kind = runs::ColumnKind::value;
 };
 
 struct Plot {
@@ -31,16 +31,16 @@ struct Plot {
 };
 
 // Returns the unit of a curve: sums are drawn as they are, events per orbit, fluxes as viscosities.
-std::string drawn_unit(const SeriesColumn& column) {
+std::string drawn_unit(const runs::SeriesColumn& column) {
   const std::string unit = column.unit;
-  return column.kind == ColumnKind::count  ? "per orbit"
-         : column.kind == ColumnKind::flux ? "m²/s"
-         : unit == "1"                     ? ""
-                                           : unit;
+  return column.kind == runs::ColumnKind::count  ? "per orbit"
+         : column.kind == runs::ColumnKind::flux ? "m²/s"
+         : unit == "1"                           ? ""
+                                                 : unit;
 }
 
 // Returns the plots of a series. Columns unknown to this program have plots titled with their names.
-std::vector<Plot> plots_of(const SeriesTable& series) {
+std::vector<Plot> plots_of(const io::SeriesTable& series) {
   std::vector<Plot> plots;
   const auto curve_of = [&](const std::string& title, const std::string& unit, const Curve& curve) {
     const auto same = std::find_if(plots.begin(), plots.end(), [&](const Plot& plot) { return plot.title == title; });
@@ -50,7 +50,7 @@ std::vector<Plot> plots_of(const SeriesTable& series) {
       plots.push_back({title, unit, {curve}});
   };
   std::set<std::string> known = {"step", "time_orbits"};
-  for (const SeriesColumn& column : series_columns()) {
+  for (const runs::SeriesColumn& column : runs::series_columns()) {
     const std::string plot = column.plot;
     const std::size_t colon = plot.find(": ");
     if (known.insert(column.name).second)
@@ -67,14 +67,14 @@ struct Points {
 };
 
 // Returns the points of a curve; unknown values (NaN) are omitted.
-Points points_of(const SeriesTable& series, const Curve& curve, const RingScale& scale) {
+Points points_of(const io::SeriesTable& series, const Curve& curve, const runs::RingScale& scale) {
   const std::vector<double>&times = series.of("time_orbits"), &column = series.of(curve.column);
   const double orbit_s = 2.0 * std::numbers::pi / scale.orbital_frequency;
   const double unit =
-      curve.kind == ColumnKind::flux ? orbit_s * scale.mass * scale.shear * scale.orbital_frequency : 1.0;
+      curve.kind == runs::ColumnKind::flux ? orbit_s * scale.mass * scale.shear * scale.orbital_frequency : 1.0;
   assert(column.size() == times.size());
   Points points;
-  const bool instantaneous = curve.kind == ColumnKind::value || curve.kind == ColumnKind::sum;
+  const bool instantaneous = curve.kind == runs::ColumnKind::value || curve.kind == runs::ColumnKind::sum;
   for (std::size_t k = instantaneous ? 0 : 1; k < column.size(); ++k) {
     const double time = instantaneous ? times[k] : 0.5 * (times[k - 1] + times[k]);
     const double value = instantaneous ? column[k] : (column[k] - column[k - 1]) / ((times[k] - times[k - 1]) * unit);
@@ -95,21 +95,22 @@ Json binned(const Points& points) {
     const std::size_t from = b * points.times.size() / bins, to = (b + 1) * points.times.size() / bins;
     const auto part = [&](const std::vector<double>& all_of) {
       const auto begin = all_of.begin();
-      return scatter_of({begin + static_cast<std::ptrdiff_t>(from), begin + static_cast<std::ptrdiff_t>(to)});
+      return statistics::scatter_of(
+          {begin + static_cast<std::ptrdiff_t>(from), begin + static_cast<std::ptrdiff_t>(to)});
     };
-    const Scatter values = part(points.values);
-    all.push_back({part(points.times).mean, values.mean, or_null(values.mean_error())});
+    const statistics::Scatter values = part(points.values);
+    all.push_back({part(points.times).mean, values.mean, quantities::or_null(values.mean_error())});
   }
   return all;
 }
 
 Json numbers_of_estimate(const Estimate& mean) {
-  return {{"value", or_null(mean.value)}, {"error", or_null(mean.error)}};
+  return {{"value", quantities::or_null(mean.value)}, {"error", quantities::or_null(mean.error)}};
 }
 
 // Returns the mean over the steady part: for viscosities the value of the tables, otherwise the mean of the rows; null
 // if there are none.
-Json steady_mean(const Curve& curve, const Points& points, const Transport& steady) {
+Json steady_mean(const Curve& curve, const Points& points, const runs::Transport& steady) {
   if (curve.column == "translational_flux_kg_m2_s")
     return numbers_of_estimate(steady.translational);
   if (curve.column == "collisional_flux_kg_m2_s")
@@ -120,17 +121,19 @@ Json steady_mean(const Curve& curve, const Points& points, const Transport& stea
   for (std::size_t k = 0; k < points.times.size(); ++k)
     if (points.times[k] >= steady.since_orbit && points.times[k] <= steady.until_orbit)
       values.push_back(points.values[k]);
-  return values.empty() || curve.kind == ColumnKind::sum ? Json(nullptr) : numbers_of_estimate(block_mean(values));
+  return values.empty() || curve.kind == runs::ColumnKind::sum ? Json(nullptr)
+                                                               : numbers_of_estimate(statistics::block_mean(values));
 }
 
 } // namespace
 
-std::optional<Transport> steady_part(const TransportReport& report) {
-  const std::optional<Transport>& found = report.transport();
+std::optional<runs::Transport> steady_part(const runs::TransportReport& report) {
+  const std::optional<runs::Transport>& found = report.transport();
   return found && found->since_found ? found : std::nullopt;
 }
 
-Json series_plots(const SeriesTable& series, const RingScale& scale, const std::optional<Transport>& steady) {
+Json series_plots(const io::SeriesTable& series, const runs::RingScale& scale,
+                  const std::optional<runs::Transport>& steady) {
   Json all = {{"steady", nullptr}, {"plots", Json::array()}};
   if (steady)
     all["steady"] = {steady->since_orbit, steady->until_orbit};
@@ -152,4 +155,4 @@ Json series_plots(const SeriesTable& series, const RingScale& scale, const std::
   return all;
 }
 
-} // namespace keeler
+} // namespace keeler::run_report

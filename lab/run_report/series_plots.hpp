@@ -8,14 +8,14 @@
 
 #include <optional>
 
-namespace keeler {
+namespace keeler::run_report {
 
 /// Returns the steady part of a run, over which plots give means; none if it was not detected.
-std::optional<Transport> steady_part(const TransportReport& report);
+std::optional<runs::Transport> steady_part(const runs::TransportReport& report);
 
 /// Returns the data that plots.js draws: a plot for each quantity of the series, with the means over `steady`, if any,
 /// and its viscosities.
-nlohmann::ordered_json series_plots(const SeriesTable& series, const RingScale& scale,
-                                    const std::optional<Transport>& steady);
+nlohmann::ordered_json series_plots(const io::SeriesTable& series, const runs::RingScale& scale,
+                                    const std::optional<runs::Transport>& steady);
 
-} // namespace keeler
+} // namespace keeler::run_report

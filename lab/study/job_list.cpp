@@ -14,12 +14,12 @@
 
 #include <fcntl.h>
 
-namespace keeler {
+namespace keeler::study {
 
 JobList::JobList(const std::filesystem::path& file) : file_(file) {
   if (!std::filesystem::exists(file))
     return;
-  std::istringstream lines(read_lines(file));
+  std::istringstream lines(files::read_lines(file));
   std::string text;
   for (std::string line; std::getline(lines, line);) {
     const Json entry = json_of<Json>(line);
@@ -29,12 +29,12 @@ JobList::JobList(const std::filesystem::path& file) : file_(file) {
     text += line + "\n";
   }
   if (text.size() != std::filesystem::file_size(file))
-    write_text(file, text); // drops the incomplete line of an interrupted program
+    files::write_text(file, text); // drops the incomplete line of an interrupted program
 }
 
 void JobList::keep(const std::string& name, const Json& result) {
   const std::string line = json_text(Json{{"job", name}, {"result", result}}) + "\n";
-  Descriptor out(file_, O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW);
+  files::Descriptor out(file_, O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW);
   try {
     out.append_whole(std::as_bytes(std::span(line)));
   } catch (const IoError& error) {
@@ -67,4 +67,4 @@ bool JobList::run(const std::vector<Job>& jobs, const std::function<void(const P
   return true;
 }
 
-} // namespace keeler
+} // namespace keeler::study

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::study {
 
 using Json = nlohmann::ordered_json;
 
@@ -43,4 +43,4 @@ private:
   std::map<std::string, Json> results_;
 };
 
-} // namespace keeler
+} // namespace keeler::study

@@ -12,7 +12,7 @@
 #include <exception>
 #include <fstream>
 
-namespace keeler {
+namespace keeler::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,7 +28,7 @@ std::string processor() {
 } // namespace
 
 std::map<std::string, std::string> study_provenance(const std::vector<std::string>& arguments) {
-  const Provenance p = collect_provenance(arguments);
+  const io::Provenance p = io::collect_provenance(arguments);
   return {{"command", p.at("arguments")}, {"host", p.at("host")},   {"processor", processor()},
           {"compiler", p.at("compiler")}, {"flags", p.at("flags")}, {"commit", p.at("commit")}};
 }
@@ -45,14 +45,14 @@ Json open_study_folder(const fs::path& folder, const Json& options,
     if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
       throw UsageError(
           fmt::format("'{}' is not empty and is not the folder of a study; name another folder", folder.string()));
-    make_folder(folder);
+    batch::make_folder(folder);
     Json begun = options;
     for (const auto& [key, value] : provenance)
       begun[key] = value;
-    write_text(file, json_text(begun, 2) + "\n");
+    files::write_text(file, json_text(begun, 2) + "\n");
     return begun;
   }
-  const Json before = json_of<Json>(read_text(file));
+  const Json before = json_of<Json>(files::read_text(file));
   for (const auto& [key, value] : options.items())
     if (!before.is_object() || !before.contains(key) || before[key] != value)
       throw UsageError(fmt::format("'{}' holds a study with another {} ({}); give the same options or name another "
@@ -76,4 +76,4 @@ void draw_and_report(const std::function<bool()>& draw, const std::function<void
     std::rethrow_exception(fault);
 }
 
-} // namespace keeler
+} // namespace keeler::study

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::study {
 
 /// Returns the provenance of the measurements: command, host, processor, compiler, flags, commit.
 std::map<std::string, std::string> study_provenance(const std::vector<std::string>& arguments);
@@ -26,4 +26,4 @@ Json open_study_folder(const std::filesystem::path& folder, const Json& options,
 /// report is written. `draw` returns true if there are figures; `report` receives this value.
 void draw_and_report(const std::function<bool()>& draw, const std::function<void(bool)>& report);
 
-} // namespace keeler
+} // namespace keeler::study

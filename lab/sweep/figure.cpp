@@ -10,7 +10,7 @@
 #include <map>
 #include <utility>
 
-namespace keeler {
+namespace keeler::sweep {
 namespace {
 
 // The index of the axis of x, and the index of x among the keys of all axes.
@@ -59,7 +59,7 @@ std::vector<std::string> words_along_x(const Grid& grid) {
 
 // Returns the key with its unit: "particles.density (kg/m³)".
 std::string label_of_key(const std::string& path) {
-  const Key* const key = find_key(path);
+  const Key* const key = scene::find_key(path);
   if (key == nullptr || key->unit.empty() || key->unit == "1")
     return path;
   std::string unit = key->unit;
@@ -71,15 +71,16 @@ std::string label_of_key(const std::string& path) {
 
 } // namespace
 
-std::vector<PlotCurve> sweep_curves(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points) {
-  std::vector<PlotCurve> curves;
+std::vector<plot::PlotCurve> sweep_curves(const Grid& grid, const Plan& plan,
+                                          const std::vector<batch::PointRow>& points) {
+  std::vector<plot::PlotCurve> curves;
   if (grid.plot.x.empty())
     return curves;
   const IndexOfX x = index_of_x(grid);
   const std::size_t y = grid.quantities.find(grid.plot.y).value();
   const bool numbers = x_is_number(grid, plan);
   std::map<std::string, std::size_t> curve_of; // by name
-  for (const PointRow& row : points) {
+  for (const batch::PointRow& row : points) {
     if (!row.values[y])
       continue;
     const GridPoint& point = plan.points[row.point];
@@ -93,25 +94,26 @@ std::vector<PlotCurve> sweep_curves(const Grid& grid, const Plan& plan, const st
         {numbers ? *point.settings[x.key]->number : static_cast<double>(point.on_axis[x.axis]), value.value,
          std::isfinite(value.error) ? value.error : 0.0});
   }
-  for (PlotCurve& curve : curves)
+  for (plot::PlotCurve& curve : curves)
     std::sort(curve.points.begin(), curve.points.end(),
-              [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
+              [](const plot::PlotPoint& a, const plot::PlotPoint& b) { return a.x < b.x; });
   return curves;
 }
 
-bool draw_figure(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points, const RunFolders& folders) {
-  const std::vector<PlotCurve> curves = sweep_curves(grid, plan, points);
+bool draw_figure(const Grid& grid, const Plan& plan, const std::vector<batch::PointRow>& points,
+                 const batch::RunFolders& folders) {
+  const std::vector<plot::PlotCurve> curves = sweep_curves(grid, plan, points);
   if (curves.empty())
     return false;
-  PlotAxis x{.label = label_of_key(grid.plot.x), .log = grid.plot.x_log};
-  const PlotAxis y{.label = grid.plot.y, .log = grid.plot.y_log};
+  plot::PlotAxis x{.label = label_of_key(grid.plot.x), .log = grid.plot.x_log};
+  const plot::PlotAxis y{.label = grid.plot.y, .log = grid.plot.y_log};
   if (!x_is_number(grid, plan)) {
     x.log = false;
     x.words = words_along_x(grid);
     x.range = {-0.5, static_cast<double>(x.words.size()) - 0.5};
   }
-  save_figures({.panels = {{.x = x, .y = y, .curves = curves}}}, folders.path(), "figure");
+  plot::save_figures({.panels = {{.x = x, .y = y, .curves = curves}}}, folders.path(), "figure");
   return true;
 }
 
-} // namespace keeler
+} // namespace keeler::sweep

@@ -8,13 +8,15 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::sweep {
 
 /// Returns the curves through the points that have y, one for each combination of values on the other axes. If x is not
 /// a number, its index on the axis is used.
-std::vector<PlotCurve> sweep_curves(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points);
+std::vector<plot::PlotCurve> sweep_curves(const Grid& grid, const Plan& plan,
+                                          const std::vector<batch::PointRow>& points);
 
 /// Writes figure.svg and figure.png. Returns false if there is nothing to draw. Throws IoError.
-bool draw_figure(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points, const RunFolders& folders);
+bool draw_figure(const Grid& grid, const Plan& plan, const std::vector<batch::PointRow>& points,
+                 const batch::RunFolders& folders);
 
-} // namespace keeler
+} // namespace keeler::sweep

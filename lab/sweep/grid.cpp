@@ -16,7 +16,7 @@
 #include <cmath>
 #include <set>
 
-namespace keeler {
+namespace keeler::sweep {
 namespace {
 
 namespace fs = std::filesystem;
@@ -26,13 +26,13 @@ constexpr const char* seed_key = "particles.seed";
 
 // Returns true if a text value of the key names a file.
 bool names_file(const std::string& path) {
-  const Key* const key = find_key(path);
+  const Key* const key = scene::find_key(path);
   return key && (key->type == KeyType::path || key->type == KeyType::rows);
 }
 
 class GridReader {
 public:
-  explicit GridReader(const fs::path& file) : text_(read_input(file, file.string())) {
+  explicit GridReader(const fs::path& file) : text_(files::read_input(file, file.string())) {
     grid_.file = file;
     grid_.text = text_;
   }
@@ -51,11 +51,11 @@ public:
 
 private:
   toml::table parse() const {
-    require_bounded_toml(text_, grid_.file.string());
+    files::require_bounded_toml(text_, grid_.file.string());
     try {
       return toml::parse(text_, grid_.file.string());
     } catch (const toml::parse_error& error) {
-      fail_at(position(error.source().begin), toml_fault(error.description()));
+      config::fail_at(position(error.source().begin), files::toml_fault(error.description()));
     }
   }
 
@@ -68,15 +68,15 @@ private:
   void known(const toml::table& table, const Names& names, const char* owner) const {
     for (const auto& [key, node] : table)
       if (std::find(names.begin(), names.end(), key.str()) == names.end())
-        fail_at(position(key.source().begin), fmt::format("unknown key {} ({} has {}); correct or remove it", key.str(),
-                                                          owner, fmt::join(names, ", ")));
+        config::fail_at(position(key.source().begin), fmt::format("unknown key {} ({} has {}); correct or remove it",
+                                                                  key.str(), owner, fmt::join(names, ", ")));
   }
 
   // Returns the value of a key, null if it is missing. Fails if it has another type.
   template<class Type> const auto* find(const toml::table& table, const char* name, const char* kind) const {
     const toml::node* const node = table.get(name);
     if (node && !node->is<Type>())
-      fail_at(position(*node), fmt::format("{} must be {}; correct it", name, kind));
+      config::fail_at(position(*node), fmt::format("{} must be {}; correct it", name, kind));
     return node ? node->as<Type>() : nullptr;
   }
 
@@ -87,13 +87,13 @@ private:
   // Returns a value as TOML on one line. File names, which are relative to the grid, are made absolute.
   std::string toml_of(const toml::node& node, const std::string& path) const {
     if (const auto* const text = node.as_string())
-      return to_toml(names_file(path) && !text->get().empty() ? absolute(text->get()) : text->get());
+      return config::to_toml(names_file(path) && !text->get().empty() ? absolute(text->get()) : text->get());
     if (const auto* const flag = node.as_boolean())
-      return to_toml(flag->get());
+      return config::to_toml(flag->get());
     if (const auto* const integer = node.as_integer())
-      return to_toml(integer->get());
+      return config::to_toml(integer->get());
     if (const auto* const number = node.as_floating_point())
-      return to_toml(number->get());
+      return config::to_toml(number->get());
     Names parts;
     if (const auto* const list = node.as_array()) {
       for (const toml::node& element : *list)
@@ -105,7 +105,7 @@ private:
         parts.push_back(fmt::format("{} = {}", key.str(), toml_of(inner, fmt::format("{}.{}", path, key.str()))));
       return fmt::format("{{ {} }}", fmt::join(parts, ", "));
     }
-    fail_at(position(node), fmt::format("{} is a date or time (no key takes one); correct it", path));
+    config::fail_at(position(node), fmt::format("{} is a date or time (no key takes one); correct it", path));
   }
 
   static std::string label_of(const toml::node& node, const std::string& toml) {
@@ -132,13 +132,15 @@ private:
   void read_scene(const toml::table& table) {
     const auto* const scene = find<std::string>(table, "scene", "the path of a scene file, in quotes");
     if (!scene)
-      fail_at(start(), "scene is missing (the runs need one); add scene = \"FILE.toml\", relative to this file");
+      config::fail_at(start(),
+                      "scene is missing (the runs need one); add scene = \"FILE.toml\", relative to this file");
     grid_.scene = (grid_.file.parent_path() / scene->get()).lexically_normal();
     if (!fs::is_regular_file(grid_.scene))
-      fail_at(position(*scene),
-              fmt::format("the scene {} does not exist (searched as {}); correct the path, which is relative to "
-                          "this file",
-                          to_toml(scene->get()), grid_.scene.string()));
+      config::fail_at(
+          position(*scene),
+          fmt::format("the scene {} does not exist (searched as {}); correct the path, which is relative to "
+                      "this file",
+                      config::to_toml(scene->get()), grid_.scene.string()));
   }
 
   void read_since(const toml::table& table) {
@@ -148,8 +150,9 @@ private:
     grid_.since_position = position(*since);
     grid_.since = since->is_number() ? since->value<double>() : std::nullopt;
     if (!grid_.since || !std::isfinite(*grid_.since) || *grid_.since < 0.0)
-      fail_at(grid_.since_position, "since must be a number of orbits, 0 or more; correct it, or remove it so that the "
-                                    "steady part is detected");
+      config::fail_at(grid_.since_position,
+                      "since must be a number of orbits, 0 or more; correct it, or remove it so that the "
+                      "steady part is detected");
   }
 
   void read_seeds(const toml::table& table) {
@@ -159,7 +162,7 @@ private:
     for (const toml::node& seed : *seeds)
       grid_.seeds.push_back(value_of(seed, seed_key, position(*seeds)));
     if (grid_.seeds.empty())
-      fail_at(position(*seeds), "seeds is empty (no run would be made); list at least one, or remove the key");
+      config::fail_at(position(*seeds), "seeds is empty (no run would be made); list at least one, or remove the key");
     std::vector<std::vector<GridValue>> points;
     for (const GridValue& seed : grid_.seeds)
       points.push_back({seed});
@@ -174,8 +177,9 @@ private:
       for (const GridValue& value : point)
         labels.push_back(value.label);
       if (!seen.insert(labels).second)
-        fail_at(point.front().override.value_location,
-                fmt::format("{}{} is listed twice (both would be one run); remove one", what, fmt::join(labels, ", ")));
+        config::fail_at(
+            point.front().override.value_location,
+            fmt::format("{}{} is listed twice (both would be one run); remove one", what, fmt::join(labels, ", ")));
     }
   }
 
@@ -202,7 +206,8 @@ private:
   static void refuse_long(const std::string& key, const std::string& at) {
     constexpr std::size_t max_length = 200;
     if (key.size() > max_length)
-      fail_at(at, fmt::format("unknown key of {} bytes (no key of a scene is so long); correct it", key.size()));
+      config::fail_at(at,
+                      fmt::format("unknown key of {} bytes (no key of a scene is so long); correct it", key.size()));
   }
 
   // Registers a key of the scene, and returns it. Each key may be given only once.
@@ -210,11 +215,11 @@ private:
     constexpr std::size_t max_keys = 1000;
     refuse_long(key, at);
     if (keys_.size() >= max_keys)
-      fail_at(at, fmt::format("the grid has more than {} keys (no scene has so many); remove some", max_keys));
+      config::fail_at(at, fmt::format("the grid has more than {} keys (no scene has so many); remove some", max_keys));
     if (key == seed_key)
-      fail_at(at, "particles.seed is given by seeds (a run has one seed); write seeds = [...]");
+      config::fail_at(at, "particles.seed is given by seeds (a run has one seed); write seeds = [...]");
     if (!keys_.insert(key).second)
-      fail_at(at, fmt::format("{} is given twice in this grid (a run has one value of it); remove one", key));
+      config::fail_at(at, fmt::format("{} is given twice in this grid (a run has one value of it); remove one", key));
     return key;
   }
 
@@ -223,7 +228,7 @@ private:
     if (!axes)
       return;
     if (!axes->is_array_of_tables())
-      fail_at(position(*axes), "axis must be a list of tables; write [[axis]] with a key and its values below");
+      config::fail_at(position(*axes), "axis must be a list of tables; write [[axis]] with a key and its values below");
     for (const toml::node& axis : *axes->as_array())
       grid_.axes.push_back(read_axis(*axis.as_table()));
   }
@@ -234,9 +239,9 @@ private:
     const std::vector<std::string> key_positions = read_keys(table, axis);
     const auto* const values = find<toml::array>(table, "values", "a list of values");
     if (!values || values->empty())
-      fail_at(values ? position(*values) : position(table),
-              fmt::format("the axis of {} has no values (no run would be made); add values = [...]",
-                          fmt::join(axis.keys, " and ")));
+      config::fail_at(values ? position(*values) : position(table),
+                      fmt::format("the axis of {} has no values (no run would be made); add values = [...]",
+                                  fmt::join(axis.keys, " and ")));
     const bool several = table.contains("keys");
     for (const toml::node& node : *values)
       axis.points.push_back(read_point(node, axis.keys, key_positions, several));
@@ -249,10 +254,12 @@ private:
     const auto* const one = find<std::string>(table, "key", "a key of the scene, in quotes");
     const auto* const several = find<toml::array>(table, "keys", "a list of keys of the scene");
     if ((one != nullptr) == (several != nullptr))
-      fail_at(position(table), "an axis needs either key or keys; write for example key = \"particles.optical_depth\"");
+      config::fail_at(position(table),
+                      "an axis needs either key or keys; write for example key = \"particles.optical_depth\"");
     const auto add = [&](const toml::node& node) {
       if (!node.is_string())
-        fail_at(position(node), "a key of an axis must be a string; write for example \"particles.optical_depth\"");
+        config::fail_at(position(node),
+                        "a key of an axis must be a string; write for example \"particles.optical_depth\"");
       axis.keys.push_back(claimed(node.as_string()->get(), position(node)));
       positions.push_back(position(node));
     };
@@ -262,7 +269,7 @@ private:
       for (const toml::node& node : *several)
         add(node);
     if (axis.keys.empty())
-      fail_at(position(*several), "keys is empty (the axis changes nothing); list at least one");
+      config::fail_at(position(*several), "keys is empty (the axis changes nothing); list at least one");
     return positions;
   }
 
@@ -274,8 +281,8 @@ private:
       return {value_of(node, keys.front(), key_positions.front())};
     const toml::array* const list = node.as_array();
     if (!list || list->size() != keys.size())
-      fail_at(position(node), fmt::format("this must be a list of {} values, of {}; correct it", keys.size(),
-                                          fmt::join(keys, " and ")));
+      config::fail_at(position(node), fmt::format("this must be a list of {} values, of {}; correct it", keys.size(),
+                                                  fmt::join(keys, " and ")));
     for (std::size_t k = 0; k < keys.size(); ++k)
       point.push_back(value_of((*list)[k], keys[k], key_positions[k]));
     return point;
@@ -294,8 +301,9 @@ private:
         return std::find(axis.keys.begin(), axis.keys.end(), x->get()) != axis.keys.end();
       });
       if (!on_axis)
-        fail_at(position(*x),
-                fmt::format("x = {} is not a key of an axis (only these change); name one of them", to_toml(x->get())));
+        config::fail_at(position(*x),
+                        fmt::format("x = {} is not a key of an axis (only these change); name one of them",
+                                    config::to_toml(x->get())));
     }
     if (const auto* const y = find<std::string>(*plot, "y", "a column of sweep.csv, in quotes")) {
       grid_.plot.y = y->get();
@@ -313,18 +321,19 @@ private:
 };
 
 // Returns the named quantities and the plotted one.
-RunQuantities quantities_of(const Grid& grid, std::vector<std::string> names) {
-  RunQuantities all(names);
+batch::RunQuantities quantities_of(const Grid& grid, std::vector<std::string> names) {
+  batch::RunQuantities all(names);
   if (all.find(grid.plot.y))
     return all;
-  if (const std::vector<Quantity> measured = measured_quantities(); find_quantity(measured, grid.plot.y)) {
+  if (const std::vector<quantities::Quantity> measured = runs::measured_quantities();
+      find_quantity(measured, grid.plot.y)) {
     names.push_back(grid.plot.y);
-    all = RunQuantities(names);
+    all = batch::RunQuantities(names);
   }
   if (all.find(grid.plot.y))
     return all;
   std::vector<std::string> columns;
-  for (const RunColumn& column : all.columns())
+  for (const batch::RunColumn& column : all.columns())
     columns.push_back(column.name);
   throw UsageError(fmt::format("{}: y = \"{}\" is not measured by a sweep; choose one of {}, or a plain number of "
                                "keeler analyze by its full name (\"keeler help numbers\" lists them)",
@@ -339,4 +348,4 @@ Grid read_grid(const fs::path& file, const std::vector<std::string>& quantities)
   return grid;
 }
 
-} // namespace keeler
+} // namespace keeler::sweep

@@ -24,12 +24,12 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::sweep {
 
 /// A value of a key of the scene.
 struct GridValue {
-  Override override; ///< the key, the value as TOML, and their positions in the file
-  std::string label; ///< text in names and tables: a number or a word unchanged, anything else as TOML
+  config::Override override; ///< the key, the value as TOML, and their positions in the file
+  std::string label;         ///< text in names and tables: a number or a word unchanged, anything else as TOML
   std::optional<double> number;
 };
 
@@ -55,11 +55,11 @@ struct Grid {
   std::vector<GridValue> set;
   std::vector<GridAxis> axes;
   GridPlot plot;
-  RunQuantities quantities; ///< columns of the tables
+  batch::RunQuantities quantities; ///< columns of the tables
 };
 
 /// Reads a grid, with additional quantities for its tables. Its keys and values are not checked against the scene.
 /// Throws UsageError "file:line:column: problem; what to do" for the first fault.
 Grid read_grid(const std::filesystem::path& file, const std::vector<std::string>& quantities = {});
 
-} // namespace keeler
+} // namespace keeler::sweep

@@ -6,10 +6,10 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::sweep {
 
 /// Writes report.md.
-void write_report(const Grid& grid, const Plan& plan, const std::vector<RunRow>& runs,
-                  const std::vector<PointRow>& points, const RunFolders& folders, bool with_figure);
+void write_report(const Grid& grid, const Plan& plan, const std::vector<batch::RunRow>& runs,
+                  const std::vector<batch::PointRow>& points, const batch::RunFolders& folders, bool with_figure);
 
-} // namespace keeler
+} // namespace keeler::sweep

@@ -18,7 +18,7 @@
 #include <filesystem>
 #include <iterator>
 
-namespace keeler {
+namespace keeler::sweep {
 namespace {
 
 std::string last_part(const std::string& key) {
@@ -57,7 +57,7 @@ std::string in_name(const std::string& label) {
     return text;
   std::string name;
   std::copy_if(label.begin(), label.end(), std::back_inserter(name), plain);
-  Hash hash;
+  io::Hash hash;
   hash.add_text(label);
   return name.substr(0, max_length) + "~" + hash.hex().substr(0, 8);
 }
@@ -89,7 +89,7 @@ std::string name_of(const GridPoint& point, const std::vector<std::string>& name
 
 // Validates the scene of a run. A fault of the grid names its line; a fault of the scene file names the run.
 Scene checked_scene(const Grid& grid, const GridPoint& point, const GridValue* seed, const std::string& run) {
-  std::vector<Override> overrides;
+  std::vector<config::Override> overrides;
   for (const GridValue& value : grid.set)
     overrides.push_back(value.override);
   for (const GridValue* const value : point.settings)
@@ -97,7 +97,7 @@ Scene checked_scene(const Grid& grid, const GridPoint& point, const GridValue* s
   if (seed)
     overrides.push_back(seed->override);
   try {
-    return load_varied_scene(grid.scene.string(), overrides);
+    return scene::load_varied_scene(grid.scene.string(), overrides);
   } catch (const UsageError& error) {
     const std::string fault = error.what();
     if (fault.starts_with(grid.file.string() + ":"))
@@ -106,13 +106,13 @@ Scene checked_scene(const Grid& grid, const GridPoint& point, const GridValue* s
   }
 }
 
-void check_start(const Grid& grid, const PlannedRun& run) {
+void check_start(const Grid& grid, const batch::PlannedRun& run) {
   if (run.scene.start_from && !std::filesystem::exists(*run.scene.start_from))
     throw UsageError(fmt::format("{}:1:1: start.from of the run {} names '{}', which does not exist; correct it",
                                  grid.file.string(), run.name, *run.scene.start_from));
 }
 
-void check_since(const Grid& grid, const PlannedRun& run) {
+void check_since(const Grid& grid, const batch::PlannedRun& run) {
   const double end = static_cast<double>(run.scene.time.end_step) * run.scene.time.step;
   if (grid.since && *grid.since >= end)
     throw UsageError(fmt::format("{}: since = {} is not before the end of the run {} (time.end = {:.6g}), so nothing "
@@ -161,7 +161,7 @@ Plan plan_runs(const Grid& grid, const std::function<void(const Progress&)>& pro
   for (std::size_t p = 0; p < plan.points.size(); ++p)
     for (const GridValue* const seed : seeds) {
       throw_if_interrupted();
-      PlannedRun run;
+      batch::PlannedRun run;
       const std::string point = name_of(plan.points[p], names);
       run.scene = checked_scene(grid, plan.points[p], seed, point + (seed ? "seed-" + seed->label : "seed"));
       run.point = p;
@@ -177,4 +177,4 @@ Plan plan_runs(const Grid& grid, const std::function<void(const Progress&)>& pro
   return plan;
 }
 
-} // namespace keeler
+} // namespace keeler::sweep

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::sweep {
 
 /// A point of the grid: its index on each axis.
 struct GridPoint {
@@ -22,7 +22,7 @@ struct GridPoint {
 /// run's name depends only on the keys and values of its point and on the seed.
 struct Plan {
   std::vector<GridPoint> points;
-  std::vector<PlannedRun> runs;
+  std::vector<batch::PlannedRun> runs;
   std::vector<std::string> keys; ///< keys of all axes
 };
 
@@ -30,4 +30,4 @@ struct Plan {
 /// Throws UsageError for the first fault and for a grid of too many runs, Interrupted (interrupt.hpp).
 Plan plan_runs(const Grid& grid, const std::function<void(const Progress&)>& progress = {});
 
-} // namespace keeler
+} // namespace keeler::sweep

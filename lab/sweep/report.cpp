@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::sweep {
 namespace {
 
 using Table = std::vector<std::vector<std::string>>;
@@ -38,14 +38,14 @@ std::string with_error(const std::optional<Estimate>& value) {
              : format_number(value->value, 4);
 }
 
-Table table_of_points(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points) {
+Table table_of_points(const Grid& grid, const Plan& plan, const std::vector<batch::PointRow>& points) {
   std::vector<std::string> header = plan.keys;
   header.insert(header.end(), {"runs", "steady"});
   const std::vector<std::size_t> columns = shown(grid);
   for (const std::size_t column : columns)
     header.push_back("`" + grid.quantities.columns()[column].name + "`");
   Table table = {header};
-  for (const PointRow& point : points) {
+  for (const batch::PointRow& point : points) {
     if (point.finished == 0)
       continue;
     std::vector<std::string> row;
@@ -61,10 +61,10 @@ Table table_of_points(const Grid& grid, const Plan& plan, const std::vector<Poin
 
 } // namespace
 
-void write_report(const Grid& grid, const Plan& plan, const std::vector<RunRow>& runs,
-                  const std::vector<PointRow>& points, const RunFolders& folders, bool with_figure) {
-  const BatchResult result = result_of(runs);
-  Document report("Sweep of " + grid.file.filename().string());
+void write_report(const Grid& grid, const Plan& plan, const std::vector<batch::RunRow>& runs,
+                  const std::vector<batch::PointRow>& points, const batch::RunFolders& folders, bool with_figure) {
+  const batch::BatchResult result = result_of(runs);
+  report::Document report("Sweep of " + grid.file.filename().string());
   report.paragraph(fmt::format("{} of {}: {} finished, {} failed, {} not finished.", pluralize(result.runs, "run"),
                                pluralize(plan.points.size(), "point"), result.finished, result.failed,
                                result.runs - result.finished - result.failed));
@@ -81,13 +81,13 @@ void write_report(const Grid& grid, const Plan& plan, const std::vector<RunRow>&
   if (result.failed > 0) {
     report.heading("Failed runs");
     Table table = {{"run", "reason"}};
-    for (const RunRow& run : runs)
-      if (run.status == RunStatus::failed)
+    for (const batch::RunRow& run : runs)
+      if (run.status == batch::RunStatus::failed)
         table.push_back({run.run->name, run.reason});
     report.table(table);
   }
   report.paragraph("`points.csv` and `sweep.csv` have all numbers, of points and of runs.");
-  write_text(folders.path() / "report.md", report.markdown());
+  files::write_text(folders.path() / "report.md", report.markdown());
 }
 
-} // namespace keeler
+} // namespace keeler::sweep

@@ -19,7 +19,7 @@
 #include <cassert>
 #include <set>
 
-namespace keeler {
+namespace keeler::sweep {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,18 +28,18 @@ using Notice = std::function<void(const std::string&)>;
 // Held while writing files of the folder that belong to no run: one program at a time.
 class FolderFilesLock {
 public:
-  explicit FolderFilesLock(Claims& claims) : claims_(claims) { claims_.wait_for(name); }
+  explicit FolderFilesLock(batch::Claims& claims) : claims_(claims) { claims_.wait_for(name); }
   ~FolderFilesLock() { claims_.release(name); }
   FolderFilesLock(const FolderFilesLock&) = delete;
   FolderFilesLock& operator=(const FolderFilesLock&) = delete;
 
 private:
   static constexpr const char* name = "the folder"; // differs from every run's name: these have no blank
-  Claims& claims_;
+  batch::Claims& claims_;
 };
 
 // Throws if the path is a file, or a folder with other content than a sweep.
-void refuse_other_content(const RunFolders& folders) {
+void refuse_other_content(const batch::RunFolders& folders) {
   std::error_code unknown;
   const fs::file_status status = fs::status(folders.path(), unknown);
   if (fs::exists(status) && !fs::is_directory(status))
@@ -54,32 +54,33 @@ void refuse_other_content(const RunFolders& folders) {
 // Reports the notices and warnings of all runs, each text once.
 void report_warnings(const Plan& plan, const Notice& notice) {
   std::set<std::string> reported;
-  const auto report = [&](const PlannedRun& run, const std::string& text) {
+  const auto report = [&](const batch::PlannedRun& run, const std::string& text) {
     if (reported.insert(text).second)
       notice(fmt::format("note: {} ({})", text, run.name));
   };
-  for (const PlannedRun& run : plan.runs) {
+  for (const batch::PlannedRun& run : plan.runs) {
     for (const std::string& text : run.scene.notices)
       report(run, text);
-    for (const std::string& text : warnings(run.scene))
+    for (const std::string& text : advice::warnings(run.scene))
       report(run, text);
   }
 }
 
 // Writes the present tables, and removes earlier ones that are not replaced. Returns the reason if the figure failed:
 // the tables and the report are written without it.
-std::string write_tables(const Grid& grid, const Plan& plan, const RunFolders& folders, const std::vector<RunRow>& runs,
-                         const std::vector<PointRow>& points, const Notice& notice) {
-  const Json run_table = runs_as_json(grid, plan, runs), point_table = points_as_json(grid, plan, points);
+std::string write_tables(const Grid& grid, const Plan& plan, const batch::RunFolders& folders,
+                         const std::vector<batch::RunRow>& runs, const std::vector<batch::PointRow>& points,
+                         const Notice& notice) {
+  const batch::Json run_table = runs_as_json(grid, plan, runs), point_table = points_as_json(grid, plan, points);
   if (!run_table.empty())
-    write_text(folders.path() / "sweep.csv", csv_with_gaps(run_table));
+    files::write_text(folders.path() / "sweep.csv", report::csv_with_gaps(run_table));
   if (point_table.empty()) {
     std::error_code absent;
     for (const char* const name : {"points.csv", "report.md", "figure.svg", "figure.png"})
       fs::remove(folders.path() / name, absent);
     return {};
   }
-  write_text(folders.path() / "points.csv", csv_with_gaps(point_table));
+  files::write_text(folders.path() / "points.csv", report::csv_with_gaps(point_table));
   bool drawn = false;
   std::string fault;
   try {
@@ -95,7 +96,7 @@ std::string write_tables(const Grid& grid, const Plan& plan, const RunFolders& f
 
 } // namespace
 
-SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
+SweepResult sweep(const SweepSettings& settings, const runs::RunRequests& requests) {
   assert(settings.jobs > 0 && settings.notice);
   const Grid grid = read_grid(settings.grid, settings.quantities);
   SweepResult result;
@@ -107,14 +108,14 @@ SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
     result.stopped = true;
     return result;
   }
-  const RunFolders folders(settings.folder);
+  const batch::RunFolders folders(settings.folder);
   refuse_other_content(folders);
   folders.refuse_changed(plan.runs, grid.file.string() + ":1:1");
   folders.make();
-  Claims claims(folders.claims());
+  batch::Claims claims(folders.claims());
   {
     const FolderFilesLock lock(claims);
-    write_text(folders.path() / "grid.toml", grid.text);
+    files::write_text(folders.path() / "grid.toml", grid.text);
   }
   if (const std::size_t others = folders.count_other_runs(plan.runs); others > 0)
     settings.notice(fmt::format("note: {} in '{}' outside this grid (kept, but not in the tables)",
@@ -128,14 +129,15 @@ SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
   if (result.stopped)
     return result;
   const FolderFilesLock lock(claims);
-  const std::vector<RunRow> runs = run_rows(plan.runs, folders, [&](const PlannedRun& run, const fs::path& folder) {
-    return grid.quantities.measure(folder, run.scene, grid.since);
-  });
-  const std::vector<PointRow> points = point_rows(runs, plan.points.size(), grid.quantities.columns().size());
-  static_cast<BatchResult&>(result) = result_of(runs);
+  const std::vector<batch::RunRow> runs =
+      run_rows(plan.runs, folders, [&](const batch::PlannedRun& run, const fs::path& folder) {
+        return grid.quantities.measure(folder, run.scene, grid.since);
+      });
+  const std::vector<batch::PointRow> points = point_rows(runs, plan.points.size(), grid.quantities.columns().size());
+  static_cast<batch::BatchResult&>(result) = result_of(runs);
   result.figure_fault = write_tables(grid, plan, folders, runs, points, settings.notice);
   result.points = points_as_json(grid, plan, points);
   return result;
 }
 
-} // namespace keeler
+} // namespace keeler::sweep

@@ -11,23 +11,23 @@
 #include <filesystem>
 #include <string>
 
-namespace keeler {
+namespace keeler::sweep {
 
-struct SweepSettings : BatchSettings {
+struct SweepSettings : batch::BatchSettings {
   std::filesystem::path grid;
   bool tables_only = false; ///< start no run, only write the tables of finished runs
 };
 
 /// The state of the folder after a call.
-struct SweepResult : BatchResult {
+struct SweepResult : batch::BatchResult {
   bool began = false;       ///< starting runs was requested
-  Json points;              ///< the rows of points.csv, a list
+  batch::Json points;       ///< the rows of points.csv, a list
   std::string figure_fault; ///< reason why drawing the figure failed; empty if it did not
 };
 
 /// Executes the runs that are neither finished nor held by another program, and writes the tables. All input is checked
 /// before anything is written. Throws UsageError when the grid or one of its scenes is invalid, or when the folder
 /// holds other files or runs with other settings; IoError.
-SweepResult sweep(const SweepSettings& settings, const RunRequests& requests);
+SweepResult sweep(const SweepSettings& settings, const runs::RunRequests& requests);
 
-} // namespace keeler
+} // namespace keeler::sweep

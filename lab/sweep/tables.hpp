@@ -7,11 +7,11 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::sweep {
 
 /// Returns a list of objects with one member per column, null for unknown values: of the finished and failed runs, and
 /// of the points with a finished run.
-Json runs_as_json(const Grid& grid, const Plan& plan, const std::vector<RunRow>& runs);
-Json points_as_json(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points);
+batch::Json runs_as_json(const Grid& grid, const Plan& plan, const std::vector<batch::RunRow>& runs);
+batch::Json points_as_json(const Grid& grid, const Plan& plan, const std::vector<batch::PointRow>& points);
 
-} // namespace keeler
+} // namespace keeler::sweep

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace keeler {
+namespace keeler::tune {
 namespace {
 
 constexpr double growth_force_error = 1e-2;
@@ -19,7 +19,7 @@ constexpr int instants = 3; // probed states of the last orbit, or of the last h
 // Returns the scene's physics with cheap numerical settings, to evolve the state.
 Scene coarse(Scene scene) {
   scene.time.automatic = true;
-  scene.time.step = 1.0 / TimeSettings::ticks_per_orbit;
+  scene.time.step = 1.0 / scene::TimeSettings::ticks_per_orbit;
   if (scene.gravity) {
     scene.gravity->kick_every = 1;
     if (scene.gravity->images.far) {
@@ -37,7 +37,7 @@ std::uint64_t contacts_of(const Simulation& simulation) {
 // Advances to a time, and on to the next tick at which the longest steps end: there both halves of the kicks are
 // applied.
 void run_until(Simulation& simulation, double orbits, PhaseProgress& progress) {
-  while (simulation.orbits() < orbits || simulation.state().step % TimeSettings::longest != 0) {
+  while (simulation.orbits() < orbits || simulation.state().step % scene::TimeSettings::longest != 0) {
     const double before = simulation.orbits();
     simulation.advance();
     progress.add(simulation.orbits() - before);
@@ -51,9 +51,9 @@ GrownScene grow(const Scene& scene, double orbits, PhaseProgress& progress) {
   progress.begin("evolving the probed state", orbits);
   const Patch start = initial_patch(scene);
   GrownScene growth;
-  growth.scene = decided_by(scene, scale_of(start));
+  growth.scene = decided_by(scene, initial_conditions::scale_of(start));
   Simulation simulation(coarse(growth.scene), start);
-  const double last = std::min(1.0, 0.5 * orbits), begin = bench_seconds();
+  const double last = std::min(1.0, 0.5 * orbits), begin = bench::bench_seconds();
   double begin_last = begin, from = 0.0;
   std::uint64_t contacts = 0;
   for (int k = 0; k < instants; ++k) {
@@ -61,7 +61,7 @@ GrownScene grow(const Scene& scene, double orbits, PhaseProgress& progress) {
     growth.states.push_back(simulation.patch());
     if (k > 0)
       continue;
-    begin_last = bench_seconds();
+    begin_last = bench::bench_seconds();
     from = simulation.orbits();
     contacts = contacts_of(simulation);
   }
@@ -69,9 +69,9 @@ GrownScene grow(const Scene& scene, double orbits, PhaseProgress& progress) {
   const double time = growth.orbits - from,
                particles = static_cast<double>(std::max<std::size_t>(1, growth.states.back().size()));
   growth.contact_rate = 2.0 * static_cast<double>(contacts_of(simulation) - contacts) / (particles * time);
-  growth.seconds = bench_seconds() - begin;
-  growth.seconds_at_end = (bench_seconds() - begin_last) / time;
+  growth.seconds = bench::bench_seconds() - begin;
+  growth.seconds_at_end = (bench::bench_seconds() - begin_last) / time;
   return growth;
 }
 
-} // namespace keeler
+} // namespace keeler::tune

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::tune {
 
 struct GrownScene {
   Scene scene;                 ///< with the settings that depend on the initial state filled in
@@ -22,4 +22,4 @@ struct GrownScene {
 /// Precondition: `orbits` > 0.
 GrownScene grow(const Scene& scene, double orbits, PhaseProgress& progress);
 
-} // namespace keeler
+} // namespace keeler::tune

@@ -8,7 +8,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::tune {
 namespace {
 
 std::string per_cent(double fraction) {
@@ -25,7 +25,7 @@ std::string with_point(double number) {
 void add_gravity(std::vector<ChosenKey>& keys, const Tuning& tuning, const TuneSettings& settings) {
   using Solver = GravitySettings::Solver;
   assert(tuning.chosen_gravity < tuning.gravity.size());
-  const GravityBenchRow& row = tuning.gravity[tuning.chosen_gravity];
+  const bench::GravityBenchRow& row = tuning.gravity[tuning.chosen_gravity];
   const GravitySettings& gravity = row.choice.settings;
   keys.push_back(
       {"gravity.solver", fmt::format("\"{}\"", row.choice.solver),
@@ -78,4 +78,4 @@ std::string tuned_scene(const Scene& scene, const std::vector<ChosenKey>& keys) 
   return comments + parse_scene(scene.resolved, "the resolved scene", overrides).resolved;
 }
 
-} // namespace keeler
+} // namespace keeler::tune

@@ -10,7 +10,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::tune {
 namespace {
 
 constexpr double settling = 0.05, counting = 0.15; // orbits per state in a probe of kicks
@@ -43,13 +43,13 @@ Lap lap_of(const Scene& scene, const Patch& state, const StepProbe& probe) {
   Simulation simulation(with_steps(scene, probe.step, probe.drifts), state);
   run(simulation, untimed, probe.drifts);
   const std::uint64_t before = contacts_of(simulation.state().collisions);
-  const double start = bench_seconds(), from = simulation.orbits();
+  const double start = bench::bench_seconds(), from = simulation.orbits();
   do
     run(simulation, timed, probe.drifts);
-  while (bench_seconds() - start < enough_seconds);
+  while (bench::bench_seconds() - start < enough_seconds);
   const double passed = simulation.orbits() - from;
-  return {(bench_seconds() - start) / passed, static_cast<double>(contacts_of(simulation.state().collisions) - before),
-          passed};
+  return {(bench::bench_seconds() - start) / passed,
+          static_cast<double>(contacts_of(simulation.state().collisions) - before), passed};
 }
 
 } // namespace
@@ -80,7 +80,7 @@ KickProbe probe_kicks(const Scene& scene, const std::vector<Patch>& states, doub
     const auto contacts = static_cast<double>(contacts_of(after) - contacts_of(before));
     unresolved.push_back(static_cast<double>(after.unresolved - before.unresolved) / std::max(1.0, contacts));
   }
-  const Scatter scatter = scatter_of(unresolved);
+  const statistics::Scatter scatter = statistics::scatter_of(unresolved);
   return {interval, scatter.mean, scatter.mean_error()};
 }
 
@@ -122,11 +122,11 @@ std::vector<ThreadProbe> probe_threads(const Scene& scene, const Patch& patch, i
     double one = 0.0;
     for (std::size_t k = 0; k < counts.size(); ++k) {
       set_threads(counts[k]);
-      const double start = wall_seconds(), from = simulation.orbits();
+      const double start = bench::wall_seconds(), from = simulation.orbits();
       do
         run(simulation, timed, drifts);
-      while (wall_seconds() - start < enough_seconds);
-      const double seconds = (wall_seconds() - start) / (simulation.orbits() - from);
+      while (bench::wall_seconds() - start < enough_seconds);
+      const double seconds = (bench::wall_seconds() - start) / (simulation.orbits() - from);
       one = k == 0 ? seconds : one;
       gains[k].push_back(one / seconds);
       progress.add(1.0);
@@ -135,8 +135,8 @@ std::vector<ThreadProbe> probe_threads(const Scene& scene, const Patch& patch, i
   set_threads(before);
   std::vector<ThreadProbe> probes;
   for (std::size_t k = 0; k < counts.size(); ++k)
-    probes.push_back({counts[k], median(gains[k])});
+    probes.push_back({counts[k], statistics::median(gains[k])});
   return probes;
 }
 
-} // namespace keeler
+} // namespace keeler::tune

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::tune {
 
 /// Returns the scene with this step (orbits), and with self-gravity a kick every `drifts` steps.
 /// Precondition: both are positive.
@@ -28,4 +28,4 @@ std::vector<StepProbe> probe_steps(const Scene& scene, const std::vector<Patch>&
 std::vector<ThreadProbe> probe_threads(const Scene& scene, const Patch& patch, int thread_limit,
                                        PhaseProgress& progress);
 
-} // namespace keeler
+} // namespace keeler::tune

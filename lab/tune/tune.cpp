@@ -13,7 +13,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::tune {
 namespace {
 
 // Kicks per tenth of an orbit: the intervals divide it, so that outputs fall on the requested times. Consecutive
@@ -31,7 +31,8 @@ double orbits_of(const Scene& scene) {
   return static_cast<double>(scene.time.end_step) * scene.time.step;
 }
 
-GravityChoice choice(const Scene& scene, GravitySettings::Solver solver, std::size_t particles, double parameter) {
+bench::GravityChoice choice(const Scene& scene, GravitySettings::Solver solver, std::size_t particles,
+                            double parameter) {
   GravitySettings settings;
   settings.solver = solver;
   settings.images = scene.gravity->images;
@@ -40,14 +41,14 @@ GravityChoice choice(const Scene& scene, GravitySettings::Solver solver, std::si
     settings.opening_angle = parameter;
   else if (solver == GravitySettings::Solver::fft)
     settings.force_error = parameter;
-  return choice_of(settings, particles);
+  return bench::choice_of(settings, particles);
 }
 
 // Returns solvers and settings near the requested error that a scene's keys can express. A finite number of image rings
 // is part of the physics, and the mesh cannot represent it.
-std::vector<GravityChoice> gravity_candidates(const Scene& scene, std::size_t particles, double force_error) {
+std::vector<bench::GravityChoice> gravity_candidates(const Scene& scene, std::size_t particles, double force_error) {
   using Solver = GravitySettings::Solver;
-  std::vector<GravityChoice> candidates;
+  std::vector<bench::GravityChoice> candidates;
   if (particles <= max_direct)
     candidates.push_back(choice(scene, Solver::direct, particles, 0.0));
   for (const double opening_angle : {0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9})
@@ -152,7 +153,7 @@ void predict(Tuning& tuning, const Scene& scene, const GrownScene& growth) {
   const double steps = until_probed + std::max(0.0, whole - growth.orbits) * per_orbit;
   double files = 0.0;
   if (!scene.start_from) {
-    const RunEstimate estimate = estimate_run(scene, pair_yardstick(bench_seconds));
+    const advice::RunEstimate estimate = advice::estimate_run(scene, bench::pair_yardstick(bench::bench_seconds));
     files = estimate.start + estimate.output;
   }
   double speedup = 1.0;
@@ -210,4 +211,4 @@ Tuning tune(const Scene& scene, const TuneSettings& settings) {
   return tuning;
 }
 
-} // namespace keeler
+} // namespace keeler::tune

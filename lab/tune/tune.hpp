@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::tune {
 
 /// Fraction of a tolerance that the probes must meet, since the error varies between seeds (docs/dev/tune.md).
 inline constexpr double margin_for_seeds = 0.8;
@@ -52,7 +52,7 @@ struct Tuning {
   std::size_t particles = 0;
   double orbits = 0.0; ///< age of the last probed state
 
-  std::vector<GravityBenchRow> gravity; ///< empty without self-gravity
+  std::vector<bench::GravityBenchRow> gravity; ///< empty without self-gravity
   std::size_t chosen_gravity = 0;
   bool meets_force_error = true; ///< with the margin; if false, the most accurate one is chosen
   std::vector<KickProbe> kicks;  ///< in the order of the probes; empty without self-gravity
@@ -83,4 +83,4 @@ std::vector<ChosenKey> chosen_keys(const Tuning& tuning, const TuneSettings& set
 /// Returns the resolved text of the scene with these keys, below their comments.
 std::string tuned_scene(const Scene& scene, const std::vector<ChosenKey>& keys);
 
-} // namespace keeler
+} // namespace keeler::tune

@@ -15,7 +15,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::advice {
 namespace {
 
 // Peak memory of `keeler run` of examples/a-ring-wakes and examples/equilibrium, measured at N = 10⁵ and 4 × 10⁵.
@@ -57,7 +57,7 @@ double mesh_memory(const Scene& scene, std::size_t count, double size_x, double 
     return 0.0;
   const GravitySettings gravity = chosen_for(count, *scene.gravity);
   if (gravity.solver == Solver::axisymmetric)
-    return radial_mesh_bytes(size_x, gravity.shortest_wavelength, threads());
+    return gravity::radial_mesh_bytes(size_x, gravity.shortest_wavelength, threads());
   const bool pairwise = gravity.solver == Solver::tree || gravity.solver == Solver::direct;
   if (pairwise && (scene.output.stress_every == 0 || !has_energy_meter(gravity)))
     return 0.0;
@@ -67,8 +67,8 @@ double mesh_memory(const Scene& scene, std::size_t count, double size_x, double 
   const double distance = std::sqrt(size_x * size_y / static_cast<double>(count));
   const double height = layer_height(scene.optical_depth(), scene.particles.layer_sizes(),
                                      scene.particles.velocity_dispersion, scene.planet.frequencies.nu);
-  const double spacing = pairwise ? cheapest_spacing : gravity.mesh_spacing;
-  return mesh_bytes(box, spacing * distance, 2.0 * mesh_scale_heights * height, count);
+  const double spacing = pairwise ? gravity::cheapest_spacing : gravity.mesh_spacing;
+  return gravity::mesh_bytes(box, spacing * distance, 2.0 * mesh_scale_heights * height, count);
 }
 
 // Returns the bytes of a run without the program. The mesh of a patch from a file is unknown here; the solver checks
@@ -89,7 +89,7 @@ Derived derive(const Scene& scene) {
   d.particles_known = !scene.start_from.has_value();
   if (!d.particles_known)
     return d;
-  const ParticleSettings& particles = scene.particles;
+  const scene::ParticleSettings& particles = scene.particles;
   d.particle_count = particles.count;
   d.optical_depth = scene.optical_depth();
   d.surface_density = scene.surface_density();
@@ -97,10 +97,10 @@ Derived derive(const Scene& scene) {
   const double dispersion =
       particles.velocity_dispersion * particles.sizes.mean_power(1) * scene.planet.orbital_frequency;
   d.toomre_q = toomre_q(d.surface_density, dispersion, scene.planet);
-  d.hill_parameter = hill_parameter(particles.density, distance_from_saturn(scene.planet));
+  d.hill_parameter = scene::hill_parameter(particles.density, distance_from_saturn(scene.planet));
   d.midplane_filling =
-      std::min(largest_filling, midplane_filling(scene.bunched_optical_depth(), particles.layer_sizes(),
-                                                 particles.velocity_dispersion, scene.planet.frequencies.nu));
+      std::min(scene::largest_filling, midplane_filling(scene.bunched_optical_depth(), particles.layer_sizes(),
+                                                        particles.velocity_dispersion, scene.planet.frequencies.nu));
   d.memory_mb = 1e-6 * (cost::program_bytes + run_bytes(scene, particles.count));
   return d;
 }
@@ -127,4 +127,4 @@ std::string in_words(const GravitySettings& gravity) {
   }
 }
 
-} // namespace keeler
+} // namespace keeler::advice

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-namespace keeler {
+namespace keeler::advice {
 
 struct Derived {
   /// False if a start file holds the particles: then only the steps are known, and the other numbers are 0.
@@ -30,4 +30,4 @@ void require_memory_for(const Scene& scene, std::size_t count);
 /// Returns a description of the solver: "tree, opening angle 0.6".
 std::string in_words(const GravitySettings& gravity);
 
-} // namespace keeler
+} // namespace keeler::advice

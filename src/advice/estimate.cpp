@@ -15,7 +15,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::advice {
 namespace {
 
 // Times on the reference machine, one thread, ns. docs/dev/estimate.md gives the command that measured each. "Particle
@@ -53,16 +53,17 @@ double cache_factor(double count) {
 }
 
 double start_ns(const Scene& scene) {
-  const double mixed = 1.0 + cost::start_mixed * std::min(1.0, (size_spread(scene.particles.sizes) - 1.0) / 0.15);
+  const double mixed =
+      1.0 + cost::start_mixed * std::min(1.0, (scene::size_spread(scene.particles.sizes) - 1.0) / 0.15);
   return mixed * (cost::start + cost::start_depth * scene.optical_depth());
 }
 
 // Returns the step in orbits. An automatic step has about a third of a contact per particle
 // (simulation/step_control.hpp).
-double step_at(const Scene& scene, const ContactRates& rates) {
+double step_at(const Scene& scene, const scene::ContactRates& rates) {
   if (!scene.time.automatic)
     return scene.time.step;
-  const double longest = static_cast<double>(TimeSettings::longest) * scene.time.step;
+  const double longest = static_cast<double>(scene::TimeSettings::longest) * scene.time.step;
   return std::clamp(0.35 / rates.all(), scene.time.step, longest);
 }
 
@@ -74,18 +75,18 @@ double kicks_per_orbit(const Scene& scene) {
 // Returns ns per particle and orbit for contacts; a contact of two particles is one event. Crowding adds neighbours to
 // searches, a wide size distribution adds levels of cells; crowded neighbours are of the finest level. Contacts that
 // follow from others in the same step cost more.
-double contacts_ns(const ContactRates& rates, double dilute, double count, const Scene& scene) {
+double contacts_ns(const scene::ContactRates& rates, double dilute, double count, const Scene& scene) {
   const double crowded = 1.0 + 0.17 * std::log(std::max(1.0, rates.fast / dilute));
-  const double search = std::max(size_spread(scene.particles.sizes), crowded);
+  const double search = std::max(scene::size_spread(scene.particles.sizes), crowded);
   const double chains = 1.0 + 0.3 * std::log(1.0 + rates.all() * step_at(scene, rates));
   return cost::contact * search * chains * cache_factor(count) * 0.5 * rates.all();
 }
 
 // Returns ns per particle and orbit.
-double drift_ns(const ContactRates& rates, double dilute, double count, const Scene& scene) {
+double drift_ns(const scene::ContactRates& rates, double dilute, double count, const Scene& scene) {
   const double step = step_at(scene, rates);
   const double contacts = rates.all() * step; // per particle and step
-  const double spread = size_spread(scene.particles.sizes);
+  const double spread = scene::size_spread(scene.particles.sizes);
   const double forces = cost::external * static_cast<double>(scene.external_forces.size());
   const double lifetimes = 0.4 + 0.6 * step / usual_step; // the lifetime of lists is a time, not a number of steps
   const double lists = (cost::lists * lifetimes + cost::left_list * std::min(contacts, 0.3)) * spread;
@@ -102,7 +103,7 @@ ShearingBox box_of(const Scene& scene) {
 // Returns the height of the layer at the start over the mean distance of particles in the plane. It exceeds one in
 // dense layers, and where most particles are small.
 double relative_height(const Scene& scene) {
-  const ParticleSettings& particles = scene.particles;
+  const scene::ParticleSettings& particles = scene.particles;
   const double distance = std::sqrt(scene.size_x * scene.size_y / static_cast<double>(particles.count));
   return layer_height(scene.optical_depth(), particles.layer_sizes(), particles.velocity_dispersion,
                       scene.planet.frequencies.nu) /
@@ -123,15 +124,15 @@ double mesh_ns(const Scene& scene, const GravitySettings& gravity, double height
   constexpr double heights = 6.0, bytes_per_node = 8.0; // scale heights from the lowest particle to the highest
   const double count = static_cast<double>(scene.particles.count),
                distance = std::sqrt(scene.size_x * scene.size_y / count);
-  const double bytes =
-      mesh_bytes(box_of(scene), gravity.mesh_spacing * distance, heights * height * distance, scene.particles.count);
+  const double bytes = gravity::mesh_bytes(box_of(scene), gravity.mesh_spacing * distance, heights * height * distance,
+                                           scene.particles.count);
   return cost::mesh + cost::mesh_node * bytes / bytes_per_node / count;
 }
 
 // Particles reach three scale heights from the mid-plane; a box narrower than that needs more rings of images.
-double near_images(const Scene& scene, ImageSettings images) {
+double near_images(const Scene& scene, gravity::ImageSettings images) {
   constexpr double highest = 3.0, max_rings = 6.0;
-  const ParticleSettings& particles = scene.particles;
+  const scene::ParticleSettings& particles = scene.particles;
   const double height = highest * layer_height(scene.optical_depth(), particles.layer_sizes(),
                                                particles.velocity_dispersion, scene.planet.frequencies.nu);
   const double halves = std::ceil(2.0 * height / std::min(scene.size_x, scene.size_y));
@@ -142,7 +143,7 @@ double near_images(const Scene& scene, ImageSettings images) {
 
 // Returns ns per particle and kick.
 double gravity_ns(const Scene& scene) {
-  const SizeLaw& sizes = scene.particles.sizes;
+  const particles::SizeLaw& sizes = scene.particles.sizes;
   const double count = static_cast<double>(scene.particles.count);
   const GravitySettings gravity = chosen_for(scene.particles.count, *scene.gravity);
   const double height = relative_height(scene), images = near_images(scene, gravity.images);
@@ -156,10 +157,10 @@ double gravity_ns(const Scene& scene) {
     return cost::kick + mesh_ns(scene, gravity, height);
   case GravitySettings::Solver::axisymmetric:
     return cost::kick + cost::radial_waves +
-           cost::radial_node * radial_mesh_nodes(scene.size_x, gravity.shortest_wavelength) / count;
+           cost::radial_node * gravity::radial_mesh_nodes(scene.size_x, gravity.shortest_wavelength) / count;
   default:
     return cost::kick + mesh_ns(scene, gravity, height) +
-           cost::mesh_cut * cut_for(gravity.force_error, std::sqrt(sizes.mean_power(6)) / sizes.mean_power(3));
+           cost::mesh_cut * gravity::cut_for(gravity.force_error, std::sqrt(sizes.mean_power(6)) / sizes.mean_power(3));
   }
 }
 
@@ -189,7 +190,7 @@ double pile_ns(const Scene& scene, double dilute) {
     return 0.0;
   const double kicks = kicks_per_orbit(scene), count = static_cast<double>(scene.particles.count);
   const bool carries = scene.gravity->carries();
-  const ContactRates rates{carries ? rattling : bouncing * kicks, 0.0};
+  const scene::ContactRates rates{carries ? rattling : bouncing * kicks, 0.0};
   return contacts_ns(rates, dilute, count, scene) + (carries ? cost::resting * kicks : 0.0);
 }
 
@@ -222,7 +223,7 @@ std::vector<std::string> expensive_settings(const Scene& scene) {
           format_number(longer / shorter, 3), format_number(times, 1), near_images(scene, scene.gravity->images)));
   }
   Scene bouncing = scene;
-  bouncing.collisions.restitution = constant_restitution(0.5);
+  bouncing.collisions.restitution = collision::constant_restitution(0.5);
   if (const double times = here.drift / estimate_run(bouncing).drift; times >= much)
     lines.push_back(
         fmt::format("a restitution of {} makes the drift cost about {} times more than one of 0.5: particles that lose "
@@ -237,8 +238,8 @@ RunEstimate estimate_run(const Scene& scene, double pair_ns) {
   const double count = static_cast<double>(scene.particles.count);
   const double orbits = static_cast<double>(scene.time.end_step) * scene.time.step;
   const double smooth = std::min(orbits, clumping_orbits);
-  const SceneContacts contacts = scene_contacts(scene);
-  const double dilute = dilute_rate(encountered_optical_depth(scene), scene.planet.frequencies.nu);
+  const scene::SceneContacts contacts = scene_contacts(scene);
+  const double dilute = scene::dilute_rate(encountered_optical_depth(scene), scene.planet.frequencies.nu);
   const double scale = 1e-9 * pair_ns / reference_pair_ns;
   RunEstimate estimate;
   estimate.start = scale * start_ns(scene) * count;
@@ -252,4 +253,4 @@ RunEstimate estimate_run(const Scene& scene, double pair_ns) {
   return estimate;
 }
 
-} // namespace keeler
+} // namespace keeler::advice

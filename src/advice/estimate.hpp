@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::advice {
 
 /// Processor time, s.
 struct RunEstimate {
@@ -38,4 +38,4 @@ RunEstimate estimate_run(const Scene& scene, double pair_ns = reference_pair_ns)
 /// scene has no start file.
 std::vector<std::string> expensive_settings(const Scene& scene);
 
-} // namespace keeler
+} // namespace keeler::advice

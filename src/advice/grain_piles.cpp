@@ -10,16 +10,16 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::advice {
 namespace {
 
 constexpr double aggregates_last = 1.1; // r_h
 constexpr double thin_ring = 0.5;       // optical depth: in denser rings the contact rates in wakes include aggregates
 
 // Returns the moonlets, or else the largest body of a list of sizes.
-std::vector<PatchScale::Sphere> large_bodies(const Scene& scene, const PatchScale& patch) {
-  std::vector<PatchScale::Sphere> bodies;
-  for (const MoonletSettings& moonlet : scene.moonlets)
+std::vector<scene::PatchScale::Sphere> large_bodies(const Scene& scene, const scene::PatchScale& patch) {
+  std::vector<scene::PatchScale::Sphere> bodies;
+  for (const scene::MoonletSettings& moonlet : scene.moonlets)
     bodies.push_back({moonlet.radius, moonlet.mass});
   if (bodies.empty() && scene.particles.sizes.listed > 0)
     bodies.push_back(patch.largest);
@@ -38,9 +38,9 @@ GrainPiles::GrainPiles(const Scene& scene) : count_(static_cast<double>(scene.pa
 // A body collects the grains of its radial lane of the patch, until its Hill sphere is full.
 void GrainPiles::add_moonlets(const Scene& scene) {
   constexpr double filling = 0.55, reach = 0.85, lane = 5.0; // the latter two in Hill radii
-  const PatchScale patch = scale_of(scene);
+  const scene::PatchScale patch = scale_of(scene);
   const double grain = std::pow(scene.particles.layer_sizes().effective_radius, 3);
-  for (const PatchScale::Sphere& body : large_bodies(scene, patch)) {
+  for (const scene::PatchScale::Sphere& body : large_bodies(scene, patch)) {
     if (!holds_grains(body, patch.grain, scene.planet))
       continue;
     const double hill = std::cbrt(newton_g(scene.planet.orbital_frequency) * body.mass / 3.0);
@@ -53,8 +53,8 @@ void GrainPiles::add_moonlets(const Scene& scene) {
 
 // Particles slower than their mutual escape speed form aggregates where r_h is large enough.
 void GrainPiles::add_aggregates(const Scene& scene) {
-  const ParticleSettings& particles = scene.particles;
-  const double r_h = hill_parameter(particles.density, distance_from_saturn(scene.planet));
+  const scene::ParticleSettings& particles = scene.particles;
+  const double r_h = scene::hill_parameter(particles.density, distance_from_saturn(scene.planet));
   const double depth = scene.optical_depth(), escape = std::sqrt(24.0 * std::pow(r_h, 3)); // r Ω
   if (r_h < aggregates_last || depth > thin_ring || particles.velocity_dispersion > escape)
     return;
@@ -79,4 +79,4 @@ double GrainPiles::grain_orbits(double orbits) const {
   return orbits * sum / samples;
 }
 
-} // namespace keeler
+} // namespace keeler::advice

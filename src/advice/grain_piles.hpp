@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::advice {
 
 class GrainPiles {
 public:
@@ -33,4 +33,4 @@ private:
   double half_orbits_ = 1.0;             // time until half of them have
 };
 
-} // namespace keeler
+} // namespace keeler::advice

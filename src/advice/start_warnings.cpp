@@ -9,14 +9,14 @@
 #include <algorithm>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::advice {
 namespace {
 
 using Lines = std::vector<std::string>;
 
 // Streamlines of a perturbed ring, bunched as much as they can be without crossing, change dv_y/dx by a seventh of the
 // shear.
-void warn_of_shear(const StartScale& start, Lines& lines) {
+void warn_of_shear(const scene::StartScale& start, Lines& lines) {
   constexpr double near = 0.25;
   if (!start.shear_seen || std::fabs(*start.shear_seen - 1.0) < near)
     return;
@@ -38,7 +38,7 @@ void warn_of_shear(const StartScale& start, Lines& lines) {
 }
 
 // A start that is to cool may be several times hotter than a ring (examples/quaoar: three escape speeds).
-void warn_of_speeds(const StartScale& start, Lines& lines) {
+void warn_of_speeds(const scene::StartScale& start, Lines& lines) {
   constexpr double hot = 15.0;
   const double usual = start.usual_dispersion, unit = start.mean_radius;
   if (start.dispersion > hot * usual)
@@ -53,7 +53,7 @@ void warn_of_speeds(const StartScale& start, Lines& lines) {
 }
 
 // Rings have optical depths from 1e-6 (Jupiter's, Saturn's E ring) to some 5 (Saturn's B ring).
-void warn_of_lengths(const StartScale& start, Lines& lines) {
+void warn_of_lengths(const scene::StartScale& start, Lines& lines) {
   constexpr double thinnest = 1e-6, thickest = 10.0, crowded = 100.0;
   if (start.flat && std::min(start.spread_x, start.spread_y) > crowded)
     lines.push_back(fmt::format("all particles are in the central {} % of the box: are positions and the box in m?",
@@ -68,7 +68,7 @@ void warn_of_lengths(const StartScale& start, Lines& lines) {
 
 } // namespace
 
-std::vector<std::string> warnings(const StartScale& start) {
+std::vector<std::string> warnings(const scene::StartScale& start) {
   constexpr std::size_t enough = 10; // fewer particles are an experiment on single bodies
   Lines lines;
   if (start.particle_count < enough)
@@ -79,4 +79,4 @@ std::vector<std::string> warnings(const StartScale& start) {
   return lines;
 }
 
-} // namespace keeler
+} // namespace keeler::advice

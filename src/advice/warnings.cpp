@@ -10,7 +10,7 @@
 #include <cmath>
 #include <string_view>
 
-namespace keeler {
+namespace keeler::advice {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -28,7 +28,7 @@ void warn_of_few_particles(std::size_t count, Lines& lines) {
 }
 
 // Dispersion and viscosity in wakes were measured in boxes of 4 × 4 and 8 × 8 λ_cr (docs/dev/diagnostics.md).
-void warn_of_narrow_wakes(const PatchScale& patch, Lines& lines) {
+void warn_of_narrow_wakes(const scene::PatchScale& patch, Lines& lines) {
   constexpr double min_spans = 4.0, enough = 8.0; // λ_cr
   constexpr double rounding = 0.99;
   const double spans = std::min(patch.size_x, patch.size_y) / patch.lambda_cr;
@@ -46,13 +46,13 @@ void warn_of_narrow_wakes(const PatchScale& patch, Lines& lines) {
 
 void warn_of_long_step(const Scene& scene, Lines& lines) {
   const double oscillations = scene.oscillations_per_step();
-  if (!(oscillations > TimeSettings::few_oscillations))
+  if (!(oscillations > scene::TimeSettings::few_oscillations))
     return;
-  lines.push_back(fmt::format("a step of {} orbits is {} oscillations of a particle: above {:g} the searches for "
-                              "contacts take several times longer; use steps of at most {} orbits",
-                              format_number(scene.time.step), format_number(oscillations, 3),
-                              TimeSettings::few_oscillations,
-                              format_number(TimeSettings::few_oscillations * scene.time.step / oscillations, 3)));
+  lines.push_back(
+      fmt::format("a step of {} orbits is {} oscillations of a particle: above {:g} the searches for "
+                  "contacts take several times longer; use steps of at most {} orbits",
+                  format_number(scene.time.step), format_number(oscillations, 3), scene::TimeSettings::few_oscillations,
+                  format_number(scene::TimeSettings::few_oscillations * scene.time.step / oscillations, 3)));
 }
 
 // `density`: of the particles; 0 if a start file holds it.
@@ -71,7 +71,7 @@ void warn_of_rare_kicks(const Scene& scene, double density, Lines& lines) {
   const double interval = two_pi * apart;
   const double pull = newton_g(scene.planet.orbital_frequency) * density * pi / 3.0;
   const double longest = std::sqrt(max_move / (surface * pull)) / two_pi;
-  const double r_h = hill_parameter(density, distance_from_saturn(scene.planet));
+  const double r_h = scene::hill_parameter(density, distance_from_saturn(scene.planet));
   if (r_h > 1.1 && surface * pull * interval * interval > max_move)
     lines.push_back(
         fmt::format("kicks are {} orbits apart: aggregates form at r_h {}, cannot rest between kicks that far "
@@ -93,7 +93,7 @@ double equilibrium_speed(const Scene& scene, double radius, double critical, dou
 
 // A law that decreases with speed has an equilibrium at some speed, which sets the height of the layer.
 // The critical value is that of smooth spheres; friction loses additional energy.
-void warn_of_no_equilibrium(const Scene& scene, const PatchScale& patch, Lines& lines) {
+void warn_of_no_equilibrium(const Scene& scene, const scene::PatchScale& patch, Lines& lines) {
   constexpr double fast = 100.0;      // m/s: far above any speed in a ring
   constexpr double max_aspect = 10.0; // height of the layer over the width of the box
   if (scene.collisions.friction || patch.particle_count < 2)
@@ -123,7 +123,7 @@ void warn_of_no_equilibrium(const Scene& scene, const PatchScale& patch, Lines& 
 }
 
 // Self-gravity of a sheet has no meaning below some tens of particle radii.
-void warn_of_short_waves(const GravitySettings& gravity, const PatchScale& patch, Lines& lines) {
+void warn_of_short_waves(const GravitySettings& gravity, const scene::PatchScale& patch, Lines& lines) {
   constexpr double min_radii = 10.0;
   if (gravity.solver == GravitySettings::Solver::axisymmetric &&
       gravity.shortest_wavelength < min_radii * patch.grain.radius)
@@ -133,7 +133,7 @@ void warn_of_short_waves(const GravitySettings& gravity, const PatchScale& patch
                     format_number(gravity.shortest_wavelength, 3), format_number(patch.grain.radius, 2)));
 }
 
-void warn_of_narrow_box(const PatchScale& patch, Lines& lines) {
+void warn_of_narrow_box(const scene::PatchScale& patch, Lines& lines) {
   constexpr double enough = 10.0; // diameters
   const double side = std::min(patch.size_x, patch.size_y), spans = side / (2.0 * patch.largest.radius);
   if (patch.largest.radius > 0.0 && spans < enough)
@@ -143,28 +143,28 @@ void warn_of_narrow_box(const PatchScale& patch, Lines& lines) {
         format_number(spans, 2), enough));
 }
 
-const ForceSettings* satellite_of(const Scene& scene) {
-  for (const ForceSettings& force : scene.external_forces)
+const scene::ForceSettings* satellite_of(const Scene& scene) {
+  for (const scene::ForceSettings& force : scene.external_forces)
     if (std::string_view(force.entry->table) == "satellite")
       return &force;
   return nullptr;
 }
 
 // Returns the first passage in the interval that drags by at least `min_drag`.
-std::optional<SatellitePassage> passage_between(const Scene& scene, const ForceSettings& satellite, double min_drag,
-                                                double from, double until) {
-  return dragging_passage(satellite.parameters, scene.planet.orbital_frequency, scene.planet.frequencies, min_drag,
-                          from, until);
+std::optional<forces::SatellitePassage> passage_between(const Scene& scene, const scene::ForceSettings& satellite,
+                                                        double min_drag, double from, double until) {
+  return forces::dragging_passage(satellite.parameters, scene.planet.orbital_frequency, scene.planet.frequencies,
+                                  min_drag, from, until);
 }
 
 void warn_of_satellite(const Scene& scene, Lines& lines) {
-  const ForceSettings* const satellite = satellite_of(scene);
+  const scene::ForceSettings* const satellite = satellite_of(scene);
   if (!satellite)
     return;
   const double end = static_cast<double>(scene.time.end_step) * scene.time.step;
-  if (const std::optional<SatellitePassage> passage = unresolved_passage(scene, 0.0, end))
+  if (const std::optional<forces::SatellitePassage> passage = unresolved_passage(scene, 0.0, end))
     lines.push_back(in_words(*passage));
-  const std::optional<SatellitePassage> first = passage_between(scene, *satellite, 0.0, 0.0, HUGE_VAL);
+  const std::optional<forces::SatellitePassage> first = passage_between(scene, *satellite, 0.0, 0.0, HUGE_VAL);
   if (first && first->orbits > end)
     lines.push_back(fmt::format("the satellite first passes at orbit {}, after the end of the run at orbit {}; lower "
                                 "satellite.passage, or raise time.end",
@@ -178,21 +178,21 @@ double critical_restitution(double optical_depth) {
   return std::sqrt(1.0 - 0.61 / (1.0 + optical_depth * optical_depth));
 }
 
-std::optional<SatellitePassage> unresolved_passage(const Scene& scene, double from, double until) {
-  const ForceSettings* const satellite = satellite_of(scene);
-  return satellite ? passage_between(scene, *satellite, doubtful_drag, from, until) : std::nullopt;
+std::optional<forces::SatellitePassage> unresolved_passage(const Scene& scene, double from, double until) {
+  const scene::ForceSettings* const satellite = satellite_of(scene);
+  return satellite ? passage_between(scene, *satellite, forces::doubtful_drag, from, until) : std::nullopt;
 }
 
-std::string in_words(const SatellitePassage& passage) {
+std::string in_words(const forces::SatellitePassage& passage) {
   return fmt::format(
       "the satellite's passage at orbit {} moves particles at {} of the speed at which it crosses the cell, and "
       "drags them along: up to {:g} the cell behaves as a ring, at 1 particles are thrown across it; end the run "
       "before this passage, or run each passage separately (--from the last snapshot, with upright_after counted from "
       "that passage)",
-      format_number(passage.orbits, 4), format_number(passage.drag, 2), doubtful_drag);
+      format_number(passage.orbits, 4), format_number(passage.drag, 2), forces::doubtful_drag);
 }
 
-std::vector<std::string> warnings(const Scene& scene, const PatchScale& patch) {
+std::vector<std::string> warnings(const Scene& scene, const scene::PatchScale& patch) {
   Lines lines = warnings(patch.start);
   warn_of_few_particles(patch.particle_count, lines);
   const double density = scene.start_from ? patch.density : scene.particles.density;
@@ -222,4 +222,4 @@ std::vector<std::string> warnings(const Scene& scene) {
   return lines;
 }
 
-} // namespace keeler
+} // namespace keeler::advice

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace keeler {
+namespace keeler::cells {
 void PeriodicGrid::build(std::span<const Vec3> points, const ShearingBox& box, double offset, double cell_size) {
   assert(box.size_x > 0.0 && box.size_y > 0.0);
   const double min_size = std::sqrt(box.area() / (2.0 * static_cast<double>(points.size()) + 1.0));
@@ -27,4 +27,4 @@ void PeriodicGrid::build(std::span<const Vec3> points, const ShearingBox& box, d
                 [&](std::size_t k, std::size_t position) { entries_[position] = unsorted[k]; });
 }
 
-} // namespace keeler
+} // namespace keeler::cells

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::cells {
 
 class PeriodicGrid {
 public:
@@ -59,4 +59,4 @@ void PeriodicGrid::visit_cells(const Vec3& point, double reach_x, double reach_y
       });
 }
 
-} // namespace keeler
+} // namespace keeler::cells

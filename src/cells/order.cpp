@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace keeler {
+namespace keeler::cells {
 namespace {
 
 constexpr double particles_per_cell = 2.0;
@@ -43,4 +43,4 @@ std::vector<std::uint32_t> order_by_position(const Particles& particles, const S
   return order;
 }
 
-} // namespace keeler
+} // namespace keeler::cells

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace keeler {
+namespace keeler::cells {
 
 /// Returns the indices of the particles in spatial order: by column of small cells, row, and id within a cell. `offset`
 /// is the shear offset at the epoch of the elements.
@@ -23,4 +23,4 @@ template<class T> void reorder(std::vector<T>& values, const std::vector<std::ui
   values.swap(sorted);
 }
 
-} // namespace keeler
+} // namespace keeler::cells

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace keeler {
+namespace keeler::cells {
 namespace {
 
 // Measured from the particle with the lower id, so that the bits do not depend on which of the two found the pair.
@@ -111,4 +111,4 @@ void require_no_overlap(const Overlap& largest, const std::string& state) {
                                      largest.id_i, largest.id_j, state, largest.depth));
 }
 
-} // namespace keeler
+} // namespace keeler::cells

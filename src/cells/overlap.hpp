@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-namespace keeler {
+namespace keeler::cells {
 
 /// The pair that overlaps most.
 struct Overlap {
@@ -36,4 +36,4 @@ void require_no_heap(const Patch& patch, const std::string& state);
 void require_no_overlap(const Patch& patch, const std::string& state);
 void require_no_overlap(const Overlap& largest, const std::string& state);
 
-} // namespace keeler
+} // namespace keeler::cells

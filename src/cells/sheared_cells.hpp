@@ -6,7 +6,7 @@
 #include <cassert>
 #include <cstdint>
 
-namespace keeler {
+namespace keeler::cells {
 
 /// Returns the index of the cell of a coordinate, for `cells` cells that begin at `low`. Coordinates outside, also by
 /// rounding, get the first or last cell. Precondition: cells > 0.
@@ -71,4 +71,4 @@ struct ShearedCells {
   }
 };
 
-} // namespace keeler
+} // namespace keeler::cells

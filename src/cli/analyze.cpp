@@ -24,7 +24,7 @@
 #include <memory>
 #include <optional>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -32,9 +32,9 @@ namespace fs = std::filesystem;
 struct AnalyzeOptions {
   std::string path;
   bool json = false;
-  AnalysisSettings settings;
+  diagnostics::AnalysisSettings settings;
   NumberOptions numbers;
-  OrbitWindow window;
+  runs::OrbitWindow window;
   std::optional<std::string> profile, csv;
   std::size_t profile_bins = default_profile_bins;
   SightOptions sights;
@@ -42,17 +42,17 @@ struct AnalyzeOptions {
 };
 
 // Writes one row per snapshot, with the numbers of this snapshot only.
-void write_snapshots(const fs::path& file, const StoredPatches& stored, const AnalyzeOptions& options) {
+void write_snapshots(const fs::path& file, const runs::StoredPatches& stored, const AnalyzeOptions& options) {
   assert(!stored.patches.empty());
   auto rows = nlohmann::ordered_json::array();
   for (const Patch& patch : stored.patches) {
-    const TransportReport transport = TransportReport::of_snapshot(patch, stored.gravity);
+    const runs::TransportReport transport = runs::TransportReport::of_snapshot(patch, stored.gravity);
     rows.push_back(row_of(options.numbers.chosen(record_of(measure({&patch, 1}, transport, options.settings))),
                           options.numbers.system()));
   }
   if (rows.front().is_null())
     throw UsageError("none of the numbers of --only has a column in --csv; lists and words are in --json");
-  write_table(file, csv_with_gaps(rows));
+  write_table(file, report::csv_with_gaps(rows));
 }
 
 // The output files for tables. One of them may be standard output, which then has no other text.
@@ -73,8 +73,8 @@ private:
     if (!name)
       return std::nullopt;
     const fs::path file = output_named(*name);
-    if (!is_stream(file))
-      require_writable_folder(folder_of(file), file);
+    if (!files::is_stream(file))
+      files::require_writable_folder(files::folder_of(file), file);
     return file;
   }
 };
@@ -82,9 +82,10 @@ private:
 ExitCode run(const AnalyzeOptions& options) {
   options.threads.apply();
   const Tables tables(options);
-  options.numbers.check(measured_quantities());
+  options.numbers.check(runs::measured_quantities());
   const auto [stored, transport] = measured_part(options.path, options.window);
-  const Record numbers = options.numbers.chosen(record_of(measure(stored.patches, transport, options.settings)));
+  const quantities::Record numbers =
+      options.numbers.chosen(record_of(measure(stored.patches, transport, options.settings)));
   std::optional<Sights> sights;
   if (options.sights.requested())
     sights.emplace(options.sights, stored.patches);
@@ -141,4 +142,4 @@ void add_analyze(CLI::App& program, Action& action) {
   command.callback([options, &action] { action = [options] { return run(*options); }; });
 }
 
-} // namespace keeler
+} // namespace keeler::cli

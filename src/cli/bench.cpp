@@ -1,7 +1,7 @@
 // keeler bench: times the program's kernels on this machine.
 #include "bench.hpp"
 
-namespace keeler {
+namespace keeler::cli {
 
 void add_bench(CLI::App& program, Action& action, const Communicator& ranks) {
   CLI::App& command = *program.add_subcommand("bench", "time a kernel on this machine");
@@ -11,4 +11,4 @@ void add_bench(CLI::App& program, Action& action, const Communicator& ranks) {
   add_bench_step(command, action, ranks);
 }
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -5,7 +5,7 @@
 #include "common_options.hpp"
 #include "progress_line.hpp"
 
-namespace keeler {
+namespace keeler::cli {
 
 void add_bench_drift(CLI::App& bench, Action& action);
 void add_bench_gravity(CLI::App& bench, Action& action);
@@ -48,4 +48,4 @@ auto measured(Settings settings, const Measure& measure, const Communicator& ran
   return measure(settings);
 }
 
-} // namespace keeler
+} // namespace keeler::cli

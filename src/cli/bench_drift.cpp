@@ -14,14 +14,14 @@
 #include <map>
 #include <memory>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
-const std::map<std::string, BenchSizes> sizes_by_name = {
-    {"equal", BenchSizes::equal}, {"power", BenchSizes::power}, {"moonlet", BenchSizes::moonlet}};
+const std::map<std::string, bench::BenchSizes> sizes_by_name = {
+    {"equal", bench::BenchSizes::equal}, {"power", bench::BenchSizes::power}, {"moonlet", bench::BenchSizes::moonlet}};
 
 struct DriftOptions {
-  DriftBenchSettings drift;
+  bench::DriftBenchSettings drift;
   std::string sizes = "equal";
   bool json = false;
   BenchThreadOption threads;
@@ -29,9 +29,9 @@ struct DriftOptions {
 
 ExitCode bench(const DriftOptions& options) {
   options.threads.apply();
-  DriftBenchSettings settings = options.drift;
+  bench::DriftBenchSettings settings = options.drift;
   settings.sizes = sizes_by_name.at(options.sizes);
-  const DriftBench b = measured(settings, bench_drift);
+  const bench::DriftBench b = measured(settings, bench::bench_drift);
   print_record(record_of(TimedDrift{settings, options.sizes, b}), options.json);
   return ExitCode::done;
 }
@@ -42,10 +42,10 @@ void add_bench_drift(CLI::App& bench_command, Action& action) {
   const auto options = std::make_shared<DriftOptions>();
   CLI::App& drift = *bench_command.add_subcommand(
       "drift", "the drift phase: spheres in collisional equilibrium, restitution 0.5, no gravity");
-  DriftBenchSettings& s = options->drift;
+  bench::DriftBenchSettings& s = options->drift;
   drift.add_option("--count", s.count, "particles (default: 10000)")->transform(particle_number());
   drift.add_option("--step", s.step_orbits, "step in orbits (default: 0.001)")
-      ->check(positive_number(find_key("time.step")->range.high));
+      ->check(positive_number(scene::find_key("time.step")->range.high));
   drift.add_option("--optical-depth", s.optical_depth, "optical depth, up to 10 (default: 0.5)")
       ->check(number_between(1e-6, 10.0, "an optical depth"));
   one_of(drift.add_option("--sizes", options->sizes,
@@ -53,7 +53,7 @@ void add_bench_drift(CLI::App& bench_command, Action& action) {
                           "(default: equal)"),
          {"equal", "power", "moonlet"});
   one_of(drift.add_option("--finder", s.finder, "collision finder, as in a scene (default: certified)"),
-         find_key("collisions.finder")->choices);
+         scene::find_key("collisions.finder")->choices);
   add_repeats(drift, s.repeats);
   drift.add_flag("--all-pairs", s.all_pairs,
                  "pass every candidate pair of the grid to the finder, without prior rejection");
@@ -63,4 +63,4 @@ void add_bench_drift(CLI::App& bench_command, Action& action) {
   drift.callback([options, &action] { action = [options] { return bench(*options); }; });
 }
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -11,20 +11,20 @@
 
 #include <memory>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 struct GravityOptions {
-  GravityBenchSettings bench;
+  bench::GravityBenchSettings bench;
   std::string state = "clumped";
   bool json = false;
   BenchThreadOption threads;
 };
 
-void print_json(const GravityOptions& options, const GravityBench& b) {
+void print_json(const GravityOptions& options, const bench::GravityBench& b) {
   nlohmann::ordered_json json;
   json["rows"] = nlohmann::ordered_json::array();
-  for (const GravityBenchRow& row : b.rows) {
+  for (const bench::GravityBenchRow& row : b.rows) {
     nlohmann::ordered_json line = {{"solver", row.choice.solver}, {"settings", row.choice.text}};
     for (const auto& [name, value] : row.numbers())
       line[name] = value;
@@ -43,7 +43,7 @@ void print_json(const GravityOptions& options, const GravityBench& b) {
   print("{}\n", json_text(json, 2));
 }
 
-void print_text(const GravityOptions& options, const GravityBench& b) {
+void print_text(const GravityOptions& options, const bench::GravityBench& b) {
   print("{}, {}, box {} m x {} m, shear offset {} m, {}\n", pluralize(b.count, "particle"), options.state,
         format_number(b.size_x_m, 4), format_number(b.size_y_m, 4), format_number(b.offset_m, 4),
         pluralize(threads(), "thread"));
@@ -51,8 +51,8 @@ void print_text(const GravityOptions& options, const GravityBench& b) {
         b.sample, b.edge_sample, b.edge_width_m, pluralize(options.bench.repeats, "repeat"));
   print("{:<8}{:<22}{:>12}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>10}{:>10}\n", "solver", "settings", "ns/particle", "rms",
         "99.9 %", "x", "y", "z", "edge", "edge pull", "net force");
-  for (const GravityBenchRow& row : b.rows) {
-    const ForceErrors& e = row.errors;
+  for (const bench::GravityBenchRow& row : b.rows) {
+    const diagnostics::ForceErrors& e = row.errors;
     print("{:<8}{:<22}{:>12.0f}{:>9.1e}{:>9.1e}{:>9.1e}{:>9.1e}{:>9.1e}{:>9.1e}{:>10.1e}{:>10.1e}\n", row.choice.solver,
           row.choice.text, row.ns_per_particle, e.rms, e.p999, e.component_rms[0], e.component_rms[1],
           e.component_rms[2], e.edge_rms, e.edge_pull, row.net_force);
@@ -62,7 +62,7 @@ void print_text(const GravityOptions& options, const GravityBench& b) {
 ExitCode bench(GravityOptions& options) {
   options.threads.apply();
   options.bench.clumped = options.state == "clumped";
-  const GravityBench result = measured(options.bench, bench_gravity);
+  const bench::GravityBench result = measured(options.bench, bench::bench_gravity);
   if (options.json)
     print_json(options, result);
   else
@@ -78,7 +78,7 @@ void add_bench_gravity(CLI::App& bench_command, Action& action) {
       "gravity", "the gravity solvers: cost and error of each setting, in a patch of Saturn's A ring");
   one_of(gravity.add_option("--solver", options->bench.solver,
                             "one solver (default: all, direct only up to 10000 particles)"),
-         gravity_solver_names());
+         bench::gravity_solver_names());
   gravity.add_option("--count", options->bench.count, "particles (default: 100000)")->transform(particle_number());
   one_of(gravity.add_option("--state", options->state,
                             "clumped: with self-gravity wakes; uniform: a uniform initial state (default: clumped)"),
@@ -90,4 +90,4 @@ void add_bench_gravity(CLI::App& bench_command, Action& action) {
   gravity.callback([options, &action] { action = [options] { return bench(*options); }; });
 }
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -5,23 +5,23 @@
 #include <keeler/bench/step.hpp>
 #include <keeler/quantities/quantity.hpp>
 
-namespace keeler {
+namespace keeler::cli {
 
 /// The result of a bench and its settings.
 struct TimedStep {
-  const StepBenchSettings& settings;
-  const StepBench& bench;
+  const bench::StepBenchSettings& settings;
+  const bench::StepBench& bench;
 };
 struct TimedDrift {
-  const DriftBenchSettings& settings;
+  const bench::DriftBenchSettings& settings;
   std::string sizes; ///< name of settings.sizes
-  const DriftBench& bench;
+  const bench::DriftBench& bench;
 };
 
-Record record_of(const TimedStep& step);
-Record record_of(const TimedDrift& drift);
+quantities::Record record_of(const TimedStep& step);
+quantities::Record record_of(const TimedDrift& drift);
 
-std::vector<Quantity> step_bench_quantities();
-std::vector<Quantity> drift_bench_quantities();
+std::vector<quantities::Quantity> step_bench_quantities();
+std::vector<quantities::Quantity> drift_bench_quantities();
 
-} // namespace keeler
+} // namespace keeler::cli

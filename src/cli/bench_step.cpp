@@ -12,18 +12,18 @@
 
 #include <memory>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 struct StepOptions {
-  StepBenchSettings bench;
+  bench::StepBenchSettings bench;
   bool json = false;
   BenchThreadOption threads;
 };
 
 ExitCode bench(StepOptions& options) {
   options.threads.apply();
-  const StepBench result = measured(options.bench, bench_step, options.bench.ranks);
+  const bench::StepBench result = measured(options.bench, bench::bench_step, options.bench.ranks);
   print_record(record_of(TimedStep{options.bench, result}), options.json);
   return ExitCode::done;
 }
@@ -35,7 +35,7 @@ void add_bench_step(CLI::App& bench_command, Action& action, const Communicator&
   options->bench.ranks = ranks;
   CLI::App& step = *bench_command.add_subcommand(
       "step", "a whole step, gravity and collisions, in a clumped patch of Saturn's A ring or in a snapshot");
-  StepBenchSettings& s = options->bench;
+  bench::StepBenchSettings& s = options->bench;
   CLI::Option* count = step.add_option("--count", s.count, "particles of the clumped patch (default: 100000)")
                            ->transform(particle_number());
   step.add_option("--from", s.from, "time the state of this snapshot, with the scene in it")
@@ -43,11 +43,11 @@ void add_bench_step(CLI::App& bench_command, Action& action, const Communicator&
       ->excludes(count);
   step.add_option("--kick-every", s.kick_every,
                   "steps per kick of gravity (default: 1; with --from as in the snapshot's scene)")
-      ->transform(whole_number_between(1, find_key("gravity.kick_every")->range.high, "a number of steps"));
+      ->transform(whole_number_between(1, scene::find_key("gravity.kick_every")->range.high, "a number of steps"));
   one_of(step.add_option("--solver", s.solver,
                          "gravity solver with its default settings (default: tree; with --from that of the snapshot's "
                          "scene)"),
-         gravity_solver_names());
+         bench::gravity_solver_names());
   add_repeats(step, s.repeats);
   options->threads.add_to(step);
   step.add_flag("--json", options->json, "print the numbers as JSON");
@@ -55,4 +55,4 @@ void add_bench_step(CLI::App& bench_command, Action& action, const Communicator&
   step.callback([options, &action] { action = [options] { return bench(*options); }; });
 }
 
-} // namespace keeler
+} // namespace keeler::cli

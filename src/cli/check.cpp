@@ -25,7 +25,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 struct CheckOptions {
@@ -38,31 +38,32 @@ struct CheckOptions {
 using Lines = std::vector<std::string>;
 
 // Returns size and density of the patch, from the start file if the scene has one.
-PatchScale scale_of_start(const Scene& scene) {
-  return scene.start_from || scene.particles.start ? scale_of(initial_patch(scene)) : scale_of(scene);
+scene::PatchScale scale_of_start(const Scene& scene) {
+  return scene.start_from || scene.particles.start ? initial_conditions::scale_of(initial_patch(scene))
+                                                   : scale_of(scene);
 }
 
 // Returns the estimated cost of the run; none if the particles come from a start file.
-std::optional<RunEstimate> estimate(const Scene& scene, const Derived& d) {
+std::optional<advice::RunEstimate> estimate(const Scene& scene, const advice::Derived& d) {
   if (!d.particles_known)
     return std::nullopt;
   set_threads(1);
-  return estimate_run(scene, pair_yardstick(cpu_seconds));
+  return advice::estimate_run(scene, bench::pair_yardstick(cpu_seconds));
 }
 
 ExitCode check(const CheckOptions& options) {
   if (options.defaults) {
-    print("{}", describe_keys(options.markdown));
+    print("{}", scene::describe_keys(options.markdown));
     return ExitCode::done;
   }
   if (options.scene.path.empty())
     throw UsageError("check needs a scene (there is nothing to check); write keeler check SCENE, or --defaults");
   const Scene asked = options.scene.load();
-  require_start_file(asked);
-  const PatchScale start = scale_of_start(asked);
+  initial_conditions::require_start_file(asked);
+  const scene::PatchScale start = scale_of_start(asked);
   const Scene scene = decided_by(asked, start);
-  Lines notes = warnings(scene, start);
-  const Derived derived = derive(scene);
+  Lines notes = advice::warnings(scene, start);
+  const advice::Derived derived = advice::derive(scene);
   if (const double left = 1e-6 * available_memory(); derived.memory_mb > left)
     notes.push_back(fmt::format("the run needs about {} GB of memory, and {} GB are available: \"keeler run\" refuses "
                                 "it; use fewer particles, a coarser mesh, or a machine with more memory",
@@ -87,4 +88,4 @@ void add_check(CLI::App& program, Action& action) {
   command.callback([options, &action] { action = [options] { return check(*options); }; });
 }
 
-} // namespace keeler
+} // namespace keeler::cli

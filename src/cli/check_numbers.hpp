@@ -11,18 +11,18 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::cli {
 
 /// A scene with its derived quantities.
 struct CheckedScene {
   const Scene& scene;
-  PatchScale start; ///< of the start file, if there is one
-  Derived derived;
-  std::optional<RunEstimate> cost; ///< none: the particles come from a start file
+  scene::PatchScale start; ///< of the start file, if there is one
+  advice::Derived derived;
+  std::optional<advice::RunEstimate> cost; ///< none: the particles come from a start file
   std::vector<std::string> warnings;
 };
 
-Record record_of(const CheckedScene& checked);
-std::vector<Quantity> check_quantities();
+quantities::Record record_of(const CheckedScene& checked);
+std::vector<quantities::Quantity> check_quantities();
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::cli {
 
 /// The action of the chosen subcommand. The program ends with the code that it returns.
 using Action = std::function<ExitCode()>;
@@ -44,4 +44,4 @@ void add_tile(CLI::App& program, Action& action, const std::vector<std::string>&
 void add_tune(CLI::App& program, Action& action);
 void add_watch(CLI::App& program, Action& action);
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -22,7 +22,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::cli {
 
 /// Accepts numbers above 0 and up to `max`, with a shorter message than CLI11's check.
 inline CLI::Validator positive_number(double max = std::numeric_limits<double>::infinity()) {
@@ -69,7 +69,7 @@ inline CLI::Validator whole_number_between(double low, double high, const std::s
 
 /// Accept numbers of particles of a run, of repeats of a measurement, and of threads.
 inline CLI::Validator particle_number() {
-  return whole_number_between(1, find_key("particles.count")->range.high, "a number of particles");
+  return whole_number_between(1, scene::find_key("particles.count")->range.high, "a number of particles");
 }
 inline CLI::Validator repeat_number() {
   return whole_number_between(1, 1000, "a number of repeats");
@@ -122,4 +122,4 @@ struct ThreadOption {
   }
 };
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -14,7 +14,7 @@
 #include <cassert>
 #include <memory>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 struct Candidate {
@@ -88,7 +88,7 @@ std::vector<Candidate> options_of(const Position& at) {
 
 std::vector<Candidate> examples() {
   std::vector<Candidate> candidates;
-  for (const ExampleScene& example : example_scenes())
+  for (const scene::ExampleScene& example : scene::example_scenes())
     candidates.push_back({std::string(example.name), std::string(example.about())});
   return candidates;
 }
@@ -97,12 +97,12 @@ std::vector<Candidate> examples() {
 std::vector<Candidate> scene_assignments(const std::string& begun) {
   std::vector<Candidate> candidates;
   if (const std::size_t equals = begun.find('='); equals != std::string::npos) {
-    if (const Key* key = find_key(begun.substr(0, equals)))
+    if (const Key* key = scene::find_key(begun.substr(0, equals)))
       for (const std::string& choice : key->choices)
         candidates.push_back({begun.substr(0, equals + 1) + choice, ""});
     return candidates;
   }
-  for (const Key& key : scene_keys())
+  for (const Key& key : scene::scene_keys())
     candidates.push_back({key.path + "=", key.meaning});
   return candidates;
 }
@@ -111,7 +111,7 @@ std::vector<Candidate> scene_assignments(const std::string& begun) {
 std::vector<Candidate> numbers_after(const std::string& begun) {
   const std::string done = begun.substr(0, begun.rfind(',') + 1);
   std::vector<Candidate> candidates;
-  for (const Quantity& quantity : measured_quantities())
+  for (const quantities::Quantity& quantity : runs::measured_quantities())
     candidates.push_back({done + quantity.full_name(), quantity.meaning});
   return candidates;
 }
@@ -192,4 +192,4 @@ void add_complete(CLI::App& program, Action& action) {
   });
 }
 
-} // namespace keeler
+} // namespace keeler::cli

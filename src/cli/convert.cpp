@@ -19,7 +19,7 @@
 #include <optional>
 #include <vector>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -33,14 +33,14 @@ struct ConvertOptions {
 };
 
 Patch patch_in(const fs::path& file) {
-  switch (describe_file(file).kind) {
-  case FileKind::snapshot:
-    return load_newest_patch(file).patches.back();
-  case FileKind::checkpoint: {
-    StoredRun run = load_checkpoint(file);
+  switch (io::describe_file(file).kind) {
+  case io::FileKind::snapshot:
+    return runs::load_newest_patch(file).patches.back();
+  case io::FileKind::checkpoint: {
+    runs::StoredRun run = runs::load_checkpoint(file);
     return Simulation(run.scene, std::move(run.state)).patch();
   }
-  case FileKind::contacts:
+  case io::FileKind::contacts:
     break;
   }
   throw UsageError(fmt::format("'{}' is a file of contacts, which has no particles; name a snapshot or a checkpoint",
@@ -51,9 +51,9 @@ Patch patch_in(const fs::path& file) {
 double convert_file(const fs::path& file, const fs::path& output, const ConvertOptions& options) {
   const Patch patch = patch_in(file);
   if (options.format == "csv")
-    write_particle_table(output, patch);
+    io::write_particle_table(output, patch);
   else
-    write_vtp(output, patch);
+    io::write_vtp(output, patch);
   return patch.time_orbits;
 }
 
@@ -68,21 +68,21 @@ void convert_one(const ConvertOptions& options) {
 
 // Converts all snapshots of a run into a separate folder; the list for ParaView is written last.
 void convert_run(const ConvertOptions& options) {
-  const std::vector<fs::path> snapshots = snapshots_in(options.path);
+  const std::vector<fs::path> snapshots = runs::snapshots_in(options.path);
   const fs::path folder = options.output.value_or(fs::path(options.path) / options.format);
   require_folder_name(folder);
   const fs::path list = folder / "snapshots.pvd";
   const auto result_of = [&](const fs::path& snapshot) {
     return folder / snapshot.filename().replace_extension(options.ending());
   };
-  require_writable_folder(folder_of(folder), folder);
+  files::require_writable_folder(files::folder_of(folder), folder);
   std::error_code error;
   fs::create_directory(folder, error);
   if (error)
     throw IoError(fmt::format("cannot make the folder '{}': {}; name another", folder.string(), error.message()));
   for (const fs::path& snapshot : snapshots)
     require_new_file(result_of(snapshot), options.force, "the result");
-  std::vector<VtpInstant> instants;
+  std::vector<io::VtpInstant> instants;
   for (const fs::path& snapshot : snapshots) {
     throw_if_interrupted();
     const fs::path result = result_of(snapshot);
@@ -130,4 +130,4 @@ void add_convert(CLI::App& program, Action& action) {
   });
 }
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -23,7 +23,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -62,9 +62,9 @@ std::vector<fs::path> files_named(const fs::path& folder, const std::string& beg
 }
 
 // Returns nothing for a damaged file.
-std::optional<FileDescription> description_of(const fs::path& file) {
+std::optional<io::FileDescription> description_of(const fs::path& file) {
   try {
-    return describe_file(file);
+    return io::describe_file(file);
   } catch (const IoError&) {
     return std::nullopt;
   }
@@ -83,34 +83,34 @@ Json real_number_in(const std::string& text) {
 }
 
 // Returns an empty text if the file has no such attribute.
-std::string attribute_of(const FileDescription& file, const std::string& name) {
+std::string attribute_of(const io::FileDescription& file, const std::string& name) {
   const auto found = file.attributes.find(name);
   return found == file.attributes.end() ? "" : found->second;
 }
 
-Json value_of_field(const FileDescription& file, const std::string& name) {
-  for (const FieldDescription& field : file.fields)
+Json value_of_field(const io::FileDescription& file, const std::string& name) {
+  for (const io::FieldDescription& field : file.fields)
     if (field.name == name)
       return field.value.empty() ? Json(field.shape.front()) : number_in(field.value);
   return nullptr;
 }
 
 // Adds the number that identifies a file: the time of a snapshot, the step of a checkpoint, the rows of contacts.
-void add_mark(Json& line, const std::optional<FileDescription>& file) {
+void add_mark(Json& line, const std::optional<io::FileDescription>& file) {
   line["damaged"] = !file;
   if (!file)
     return;
-  if (file->kind == FileKind::snapshot)
+  if (file->kind == io::FileKind::snapshot)
     line["time_orbits"] = real_number_in(attribute_of(*file, "RingBox/time_orbits"));
-  else if (file->kind == FileKind::checkpoint)
+  else if (file->kind == io::FileKind::checkpoint)
     line["steps"] = value_of_field(*file, "steps");
   else
     line["contact_count"] = value_of_field(*file, "Step");
 }
 
 // Adds the version, commit, host and threads of the program that wrote a file.
-void add_writer(Json& json, const FileDescription& file) {
-  const std::string group = file.kind == FileKind::checkpoint ? "provenance/" : "Code/";
+void add_writer(Json& json, const io::FileDescription& file) {
+  const std::string group = file.kind == io::FileKind::checkpoint ? "provenance/" : "Code/";
   for (const char* const name : {"version", "commit", "host"})
     if (const std::string value = attribute_of(file, group + name); !value.empty())
       json[name] = value;
@@ -121,7 +121,7 @@ void add_writer(Json& json, const FileDescription& file) {
 Json files_of(Json& json, const fs::path& folder, const std::string& beginning, const std::string& ending) {
   Json lines = Json::array();
   for (const fs::path& path : files_named(folder, beginning, ending)) {
-    const std::optional<FileDescription> file = description_of(path);
+    const std::optional<io::FileDescription> file = description_of(path);
     if (!fs::exists(path))
       continue; // a working run removed it: it keeps two checkpoints
     Json line = {{"file", path.filename().string()}, {"bytes", size_of(path)}};
@@ -134,11 +134,11 @@ Json files_of(Json& json, const fs::path& folder, const std::string& beginning, 
 }
 
 Json describe_run(const fs::path& folder) {
-  const RunView view = view_run(folder);
+  const runs::RunView view = runs::view_run(folder);
   const auto now = static_cast<double>(std::time(nullptr));
   const fs::path scene = folder / "scene.toml";
   Json json = {{"folder", folder.string()}, {"kind", "run"}, {"state", view.state()}};
-  json["title"] = fs::exists(scene) ? load_stored_scene(scene).title : "";
+  json["title"] = fs::exists(scene) ? scene::load_stored_scene(scene).title : "";
   json["particle_count"] = view.particles;
   json["time_orbits"] = view.orbits;
   json["end_orbits"] = view.end_orbits;
@@ -156,23 +156,23 @@ Json describe_run(const fs::path& folder) {
 }
 
 const char* stage_of(const fs::path& run) {
-  if (folder_is_held(run))
+  if (runs::folder_is_held(run))
     return "running";
-  switch (run_stage(run)) {
-  case RunStage::finished:
+  switch (runs::run_stage(run)) {
+  case runs::RunStage::finished:
     return "finished";
-  case RunStage::resumable:
+  case runs::RunStage::resumable:
     return "resumable";
-  case RunStage::begun:
+  case runs::RunStage::begun:
     return "begun";
-  case RunStage::absent:
+  case runs::RunStage::absent:
     break;
   }
   return "empty";
 }
 
 // Counts the runs of a sweep or a study by stage.
-Json runs_of(const RunFolders& folders) {
+Json runs_of(const batch::RunFolders& folders) {
   Json runs = Json::object();
   for (const char* const stage : {"finished", "running", "resumable", "begun", "empty", "failed"})
     runs[stage] = 0;
@@ -197,11 +197,11 @@ Json describe_many(const fs::path& folder) {
   const fs::path study = folder / "study.json";
   Json json = {{"folder", folder.string()}, {"kind", fs::exists(study) ? "study" : "sweep"}};
   if (fs::exists(study)) {
-    const Json begun = json_of<Json>(read_text(study));
+    const Json begun = json_of<Json>(files::read_text(study));
     json["study"] = begun.is_object() && begun.contains("study") ? begun["study"] : Json(nullptr);
   }
   if (fs::is_directory(folder / "runs"))
-    json["runs"] = runs_of(RunFolders(folder));
+    json["runs"] = runs_of(batch::RunFolders(folder));
   json["files"] = names_of_files(folder);
   json["bytes"] = size_of_all(folder);
   return json;
@@ -295,4 +295,4 @@ void print_folder(const Json& json) {
     print_many(json);
 }
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -27,7 +27,7 @@
 #include <filesystem>
 #include <memory>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 struct GenerateOptions {
@@ -35,7 +35,7 @@ struct GenerateOptions {
   std::string output;
   std::string table;
   bool clumped = false, relax = false, force = false;
-  SettleCriterion criterion;
+  initial_conditions::SettleCriterion criterion;
   ThreadOption threads;
   TalkOption talk;
 };
@@ -46,7 +46,7 @@ constexpr const char* stopped =
 
 Patch make_patch(const Scene& scene, const TalkOption& talk) {
   ProgressLine line(talk);
-  return initial_patch(scene, [&line](const StartProgress& progress) { line.show(progress); });
+  return initial_patch(scene, [&line](const initial_conditions::StartProgress& progress) { line.show(progress); });
 }
 
 // Returns the name for a broken state, in the folder of the requested output.
@@ -54,17 +54,19 @@ std::filesystem::path broken_name(const std::filesystem::path& output, std::int6
   return output.parent_path() / fmt::format("{}_broken_{:06}.hdf", output.stem().string(), step);
 }
 
-ClumpedState evolve_until_clumped(const Scene& scene, const GenerateOptions& options, const SnapshotMeta& meta) {
+initial_conditions::ClumpedState evolve_until_clumped(const Scene& scene, const GenerateOptions& options,
+                                                      const io::SnapshotMeta& meta) {
   ProgressLine line(options.talk);
   try {
-    return clumped_state(scene, options.criterion, [&line](const ClumpingProgress& progress) { line.show(progress); });
-  } catch (const BrokenState& broken) {
+    return clumped_state(scene, options.criterion,
+                         [&line](const initial_conditions::ClumpingProgress& progress) { line.show(progress); });
+  } catch (const initial_conditions::BrokenState& broken) {
     throw InvariantError(save_broken(broken, broken_name(options.output, broken.step), meta));
   }
 }
 
-void print_means(const char* name, const char* unit, const WindowMeans& means, const MeanBounds& bounds,
-                 double in_unit) {
+void print_means(const char* name, const char* unit, const initial_conditions::WindowMeans& means,
+                 const initial_conditions::MeanBounds& bounds, double in_unit) {
   print("{}: {:.4g} ± {:.2g} {}, {:.4g} ± {:.2g} before: changes by {:.1f} % (at most {:.1f} %), errors up to "
         "{:.1f} % (at most {:g} %)\n",
         name, in_unit * means.last.value, in_unit * means.last.error, unit, in_unit * means.before.value,
@@ -72,8 +74,8 @@ void print_means(const char* name, const char* unit, const WindowMeans& means, c
         100.0 * bounds.error);
 }
 
-void print_clumping(const Clumping& c) {
-  const Settling& s = c.settling;
+void print_clumping(const initial_conditions::Clumping& c) {
+  const initial_conditions::Settling& s = c.settling;
   print("settled after {:.4g} orbits, by means over the last {} orbits and the {} before, after orbit {:g}\n", c.orbits,
         s.window_orbits, s.window_orbits, c.criterion.first_orbit);
   print_means("viscosity from the loss of energy", "m²/s", s.viscosity, c.criterion.viscosity, c.orbital_frequency);
@@ -84,7 +86,7 @@ void print_clumping(const Clumping& c) {
 }
 
 void require_output(const GenerateOptions& options) {
-  refuse_stream(output_named(options.output), "HDF5");
+  files::refuse_stream(output_named(options.output), "HDF5");
   for (const std::string& source : {options.scene.path, options.table})
     refuse_own_source(options.output, source);
   require_new_file(options.output, options.force, "a state");
@@ -93,22 +95,23 @@ void require_output(const GenerateOptions& options) {
 void print_warnings(const Scene& scene, const Patch& patch, const TalkOption& talk) {
   if (talk.quiet)
     return;
-  for (const std::string& warning : warnings(scene, scale_of(patch)))
+  for (const std::string& warning : advice::warnings(scene, initial_conditions::scale_of(patch)))
     print("note: {}\n", warning);
 }
 
 // Removes overlaps that a run would refuse if --relax is given, otherwise reports them. Throws InvariantError.
-void remove_overlaps(Patch& patch, const GenerateOptions& options, const ParticleTable& table) {
-  const std::size_t overlaps = count_overlaps(patch, allowed_overlap);
+void remove_overlaps(Patch& patch, const GenerateOptions& options, const io::ParticleTable& table) {
+  const std::size_t overlaps = cells::count_overlaps(patch, cells::allowed_overlap);
   if (overlaps == 0)
     return;
-  const Overlap worst = largest_overlap(patch);
+  const cells::Overlap worst = cells::largest_overlap(patch);
   const std::string found = fmt::format("{} of particles overlap, most of all {} and {}, by {:.2g} of their radius sum",
                                         pluralize(overlaps, "pair"), table.location_of(worst.id_i),
                                         table.location_of(worst.id_j), worst.depth);
   if (!options.relax)
     throw InvariantError(found + "; correct them, or move them apart with --relax");
-  const Relaxation moved = unless_stopped(stopped, [&] { return relax(patch); });
+  const initial_conditions::Relaxation moved =
+      unless_stopped(stopped, [&] { return initial_conditions::relax(patch); });
   print("{}; moved {} apart, by {} m at most\n", found, pluralize(moved.moved, "particle"),
         format_number(moved.farthest, 3));
 }
@@ -119,18 +122,18 @@ void print_state(const Patch& patch, const std::string& output) {
 }
 
 ExitCode generate_from_table(const GenerateOptions& options, const std::vector<std::string>& arguments) {
-  const TableScene of = load_table_scene(options.scene.path, options.scene.overrides);
+  const scene::TableScene of = scene::load_table_scene(options.scene.path, options.scene.overrides);
   require_output(options);
-  const ParticleTable table = read_particle_table(options.table);
-  Patch patch = patch_from_table(table, of);
+  const io::ParticleTable table = io::read_particle_table(options.table);
+  Patch patch = initial_conditions::patch_from_table(table, of);
   remove_overlaps(patch, options, table);
   if (table.velocities.empty())
     options.talk.notice()("note: the table has no velocities: all orbits are circular");
   // The scene cannot reproduce this state, so the scene in the snapshot starts from the file.
-  const Scene scene =
-      decided_by(parse_scene(of.scene.resolved, options.scene.path, {}, options.output), scale_of(patch));
+  const Scene scene = decided_by(parse_scene(of.scene.resolved, options.scene.path, {}, options.output),
+                                 initial_conditions::scale_of(patch));
   print_warnings(scene, patch, options.talk);
-  write_snapshot(options.output, patch, {scene.resolved, collect_provenance(arguments)});
+  io::write_snapshot(options.output, patch, {scene.resolved, io::collect_provenance(arguments)});
   print_state(patch, options.output);
   return ExitCode::done;
 }
@@ -143,10 +146,11 @@ ExitCode generate(const GenerateOptions& options, const std::vector<std::string>
   const Scene scene = options.scene.load();
   options.talk.say_scene(scene);
   require_output(options);
-  SnapshotMeta meta{scene.resolved, collect_provenance(arguments)};
+  io::SnapshotMeta meta{scene.resolved, io::collect_provenance(arguments)};
   Patch patch;
   if (options.clumped) {
-    ClumpedState state = unless_stopped(stopped, [&] { return evolve_until_clumped(scene, options, meta); });
+    initial_conditions::ClumpedState state =
+        unless_stopped(stopped, [&] { return evolve_until_clumped(scene, options, meta); });
     patch = std::move(state.patch);
     meta.clumping = clumping_numbers(state.clumping);
     print_clumping(state.clumping);
@@ -156,7 +160,7 @@ ExitCode generate(const GenerateOptions& options, const std::vector<std::string>
   for (const std::string& notice : scene.notices)
     options.talk.notice()(notice);
   print_warnings(scene, patch, options.talk);
-  meta.scene = decided_by(scene, scale_of(patch)).resolved;
+  meta.scene = decided_by(scene, initial_conditions::scale_of(patch)).resolved;
   write_snapshot(options.output, patch, meta);
   print_state(patch, options.output);
   return ExitCode::done;
@@ -191,4 +195,4 @@ void add_generate(CLI::App& program, Action& action, const std::vector<std::stri
       [options, arguments, &action] { action = [options, arguments] { return generate(*options, arguments); }; });
 }
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -15,26 +15,26 @@
 #include <cassert>
 #include <memory>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 struct NumberTable {
   const char* title;
-  std::vector<Quantity> quantities;
+  std::vector<quantities::Quantity> quantities;
 };
 
 std::vector<NumberTable> number_tables() {
-  return {{"keeler analyze: a snapshot, or the steady part of a run", measured_quantities()},
-          {"summary.json: results of a run (keeler run --json)", summary_quantities()},
-          {"series.csv: time series of a run", series_quantities()},
+  return {{"keeler analyze: a snapshot, or the steady part of a run", runs::measured_quantities()},
+          {"summary.json: results of a run (keeler run --json)", runs::summary_quantities()},
+          {"series.csv: time series of a run", runs::series_quantities()},
           {"keeler check", check_quantities()},
           {"keeler bench step", step_bench_quantities()},
           {"keeler bench drift", drift_bench_quantities()}};
 }
 
-std::string line_of(const Quantity& quantity) {
+std::string line_of(const quantities::Quantity& quantity) {
   std::string names;
-  for (const UnitSystem system : quantity.systems())
+  for (const quantities::UnitSystem system : quantity.systems())
     names += (names.empty() ? "" : ", ") + quantity.full_name(system);
   return fmt::format("  {:<40} {}{}\n", names, quantity.meaning,
                      quantity.unit.text.empty() ? "" : fmt::format(" ({})", quantity.unit.text));
@@ -43,7 +43,7 @@ std::string line_of(const Quantity& quantity) {
 ExitCode list_numbers() {
   for (const NumberTable& table : number_tables()) {
     print("{}\n", table.title);
-    for (const Quantity& quantity : table.quantities)
+    for (const quantities::Quantity& quantity : table.quantities)
       print("{}", line_of(quantity));
     print("\n");
   }
@@ -55,7 +55,7 @@ bool explain_number(const std::string& name) {
   bool is_known = false;
   for (const NumberTable& table : number_tables()) {
     std::string lines;
-    for (const Quantity& quantity : table.quantities)
+    for (const quantities::Quantity& quantity : table.quantities)
       if (quantity.is_called(name))
         lines += line_of(quantity);
     if (!lines.empty())
@@ -79,7 +79,7 @@ const CLI::App& find_command(const CLI::App& program, const std::vector<std::str
     if (!found) {
       if (command == &program)
         for (const NumberTable& table : number_tables())
-          for (const Quantity& quantity : table.quantities)
+          for (const quantities::Quantity& quantity : table.quantities)
             names.insert(names.end(), {quantity.name, quantity.full_name()});
       const std::string near = closest(word, names);
       throw UsageError(fmt::format("'{}' has no command '{}'; {}", full_name(*command), word,
@@ -125,4 +125,4 @@ void add_help(CLI::App& program, Action& action) {
   });
 }
 
-} // namespace keeler
+} // namespace keeler::cli

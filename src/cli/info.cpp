@@ -21,25 +21,25 @@
 #include <memory>
 #include <vector>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
 // Returns the numbers that identify a file among others of its kind.
-nlohmann::ordered_json describe_state(const std::string& path, FileKind kind) {
+nlohmann::ordered_json describe_state(const std::string& path, io::FileKind kind) {
   nlohmann::ordered_json json;
-  if (kind == FileKind::checkpoint) {
-    const StoredRun run = load_checkpoint(path);
-    json["state_hash"] = state_hash(run.state, run.scene);
+  if (kind == io::FileKind::checkpoint) {
+    const runs::StoredRun run = runs::load_checkpoint(path);
+    json["state_hash"] = runs::state_hash(run.state, run.scene);
     json["time_orbits"] = static_cast<double>(run.state.step) * run.scene.time.step;
     json["particle_count"] = run.state.particles.size();
-  } else if (kind == FileKind::snapshot) {
-    const Patch patch = read_snapshot(path).patch;
+  } else if (kind == io::FileKind::snapshot) {
+    const Patch patch = io::read_snapshot(path).patch;
     json["time_orbits"] = patch.time_orbits;
     json["particle_count"] = patch.size();
   } else {
-    const ContactFile contacts = read_contacts(path);
+    const io::ContactFile contacts = io::read_contacts(path);
     json["contact_count"] = contacts.rows.size();
     if (!contacts.rows.empty()) {
       json["first_time_orbits"] = contacts.rows.front().time_orbits;
@@ -50,15 +50,15 @@ nlohmann::ordered_json describe_state(const std::string& path, FileKind kind) {
 }
 
 nlohmann::ordered_json describe(const std::string& path) {
-  const FileDescription file = describe_file(path);
+  const io::FileDescription file = io::describe_file(path);
   nlohmann::ordered_json json;
   json["file"] = path;
-  json["kind"] = file.kind == FileKind::checkpoint ? "checkpoint"
-                 : file.kind == FileKind::snapshot ? "snapshot"
-                                                   : "contacts";
+  json["kind"] = file.kind == io::FileKind::checkpoint ? "checkpoint"
+                 : file.kind == io::FileKind::snapshot ? "snapshot"
+                                                       : "contacts";
   json["format_version"] = file.format_version;
   json.update(describe_state(path, file.kind));
-  for (const FieldDescription& field : file.fields) {
+  for (const io::FieldDescription& field : file.fields) {
     nlohmann::ordered_json entry = {
         {"type", field.type}, {"shape", field.shape}, {"unit", field.unit}, {"about", field.about}};
     if (!field.value.empty())
@@ -86,9 +86,9 @@ void print_text(const nlohmann::ordered_json& json) {
     print("{:28} {}\n", name, value.get<std::string>());
 }
 
-nlohmann::ordered_json as_json(const std::string& path, const std::vector<VerifiedFile>& files) {
+nlohmann::ordered_json as_json(const std::string& path, const std::vector<runs::VerifiedFile>& files) {
   nlohmann::ordered_json json = {{"path", path}, {"damaged", 0}, {"files", nlohmann::ordered_json::array()}};
-  for (const VerifiedFile& file : files) {
+  for (const runs::VerifiedFile& file : files) {
     json["files"].push_back({{"file", file.file}, {"kind", file.kind}, {"sealed", file.sealed}});
     json["files"].back()["damage"] =
         file.damage.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(file.damage);
@@ -98,11 +98,11 @@ nlohmann::ordered_json as_json(const std::string& path, const std::vector<Verifi
   return json;
 }
 
-bool may_have_seal(const VerifiedFile& file) {
+bool may_have_seal(const runs::VerifiedFile& file) {
   return file.kind == "snapshot" || file.kind == "checkpoint" || file.kind == "contacts";
 }
 
-void print_verified(const VerifiedFile& file) {
+void print_verified(const runs::VerifiedFile& file) {
   const std::string verdict = !file.damage.empty()                  ? "damaged: " + printable_line(file.damage)
                               : file.sealed || !may_have_seal(file) ? "whole"
                                                                     : "whole as far as can be told without a seal";
@@ -111,14 +111,14 @@ void print_verified(const VerifiedFile& file) {
 
 // Prints one line per file. Throws IoError if any file is damaged.
 ExitCode verify(const std::string& path, bool json) {
-  const std::vector<VerifiedFile> files =
-      fs::is_directory(path) ? verify_folder(path) : std::vector<VerifiedFile>{verify_file(path)};
+  const std::vector<runs::VerifiedFile> files =
+      fs::is_directory(path) ? runs::verify_folder(path) : std::vector<runs::VerifiedFile>{runs::verify_file(path)};
   if (json)
     print("{}\n", json_text(as_json(path, files), 2));
   else
-    for (const VerifiedFile& file : files)
+    for (const runs::VerifiedFile& file : files)
       print_verified(file);
-  const auto damaged = [](const VerifiedFile& file) { return !file.damage.empty(); };
+  const auto damaged = [](const runs::VerifiedFile& file) { return !file.damage.empty(); };
   const auto first = std::find_if(files.begin(), files.end(), damaged);
   if (first == files.end())
     return ExitCode::done;
@@ -162,4 +162,4 @@ void add_info(CLI::App& program, Action& action) {
   });
 }
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -25,13 +25,13 @@
 #include <hdf5.h>
 #include <unistd.h>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 int fail(ExitCode code, const std::string& message) {
-  if (!another_rank_reports())
+  if (!comm::another_rank_reports())
     say(message);
-  fail_ranks(code);
+  comm::fail_ranks(code);
   return static_cast<int>(code);
 }
 
@@ -45,7 +45,7 @@ int fail_at_hand() {
 int end_with(ExitCode code) {
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
     throw IoError(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
-  finish_ranks();
+  comm::finish_ranks();
   return static_cast<int>(code);
 }
 
@@ -189,8 +189,8 @@ int run_program(int argc, char** argv) {
 }
 
 } // namespace
-} // namespace keeler
+} // namespace keeler::cli
 
 int main(int argc, char** argv) {
-  return keeler::run_program(argc, argv);
+  return keeler::cli::run_program(argc, argv);
 }

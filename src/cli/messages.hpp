@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <string>
 
-namespace keeler {
+namespace keeler::cli {
 
 inline void write_message(const std::string& text) {
   std::fputs(text.c_str(), stderr); // failure is ignored
@@ -18,4 +18,4 @@ inline void say(const std::string& line) {
   write_message("keeler: " + printable_line(line) + "\n");
 }
 
-} // namespace keeler
+} // namespace keeler::cli

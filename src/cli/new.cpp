@@ -14,7 +14,7 @@
 #include <memory>
 #include <optional>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -26,26 +26,26 @@ struct NewOptions {
 };
 
 ExitCode list_examples() {
-  for (const ExampleScene& example : example_scenes())
+  for (const scene::ExampleScene& example : scene::example_scenes())
     print("{:<20} {}\n", example.name, example.about());
   return ExitCode::done;
 }
 
 // Writes the scene and its tables into one folder. Writes nothing if one of the files exists.
 ExitCode write_example(const NewOptions& options) {
-  const ExampleScene& example = find_example(options.name);
+  const scene::ExampleScene& example = scene::find_example(options.name);
   const fs::path scene = options.output ? output_named(*options.output) : fs::path(options.name + ".toml");
-  if (is_stream(scene) && !example.tables.empty())
+  if (files::is_stream(scene) && !example.tables.empty())
     throw UsageError(fmt::format("'{}' cannot take the example {} (it needs tables in further files); name a file",
                                  scene.string(), options.name));
   require_new_file(scene, options.force, "a scene");
-  for (const ExampleScene::Table& table : example.tables)
+  for (const scene::ExampleScene::Table& table : example.tables)
     require_new_file(scene.parent_path() / table.file, options.force, "a table");
-  write_text(scene, example.toml);
+  files::write_text(scene, example.toml);
   print_written(scene);
-  for (const ExampleScene::Table& table : example.tables) {
+  for (const scene::ExampleScene::Table& table : example.tables) {
     const fs::path file = scene.parent_path() / table.file;
-    write_text(file, table.text);
+    files::write_text(file, table.text);
     print_written(file);
   }
   return ExitCode::done;
@@ -72,4 +72,4 @@ void add_new(CLI::App& program, Action& action) {
   command.callback([options, &action] { action = [options] { return make_new(*options); }; });
 }
 
-} // namespace keeler
+} // namespace keeler::cli

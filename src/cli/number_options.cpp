@@ -2,7 +2,7 @@
 
 #include "common_options.hpp"
 
-namespace keeler {
+namespace keeler::cli {
 
 void NumberOptions::add_to(CLI::App& command) {
   command
@@ -17,10 +17,12 @@ void NumberOptions::add_to(CLI::App& command) {
          {"si", "radius", "gravity"});
 }
 
-std::optional<UnitSystem> NumberOptions::system() const {
+std::optional<quantities::UnitSystem> NumberOptions::system() const {
   if (system_.empty())
     return std::nullopt;
-  return system_ == "si" ? UnitSystem::si : system_ == "radius" ? UnitSystem::radius : UnitSystem::gravity;
+  return system_ == "si"       ? quantities::UnitSystem::si
+         : system_ == "radius" ? quantities::UnitSystem::radius
+                               : quantities::UnitSystem::gravity;
 }
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::cli {
 
 /// --only NAME,… and --units SYSTEM.
 class NumberOptions {
@@ -17,17 +17,19 @@ public:
   void add_to(CLI::App& command);
 
   /// Returns the requested units; none: the default units of each number.
-  std::optional<UnitSystem> system() const;
+  std::optional<quantities::UnitSystem> system() const;
 
   /// Checks the names before anything is measured. Throws UsageError for a name that none of the quantities has.
-  void check(std::span<const Quantity> quantities) const { require_names(quantities, names_); }
+  void check(std::span<const quantities::Quantity> quantities) const { require_names(quantities, names_); }
 
   /// Returns all numbers, or the requested ones. Throws UsageError for a name that the record does not have.
-  Record chosen(const Record& record) const { return names_.empty() ? record : only(record, names_); }
+  quantities::Record chosen(const quantities::Record& record) const {
+    return names_.empty() ? record : only(record, names_);
+  }
 
 private:
   std::vector<std::string> names_;
   std::string system_;
 };
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -7,11 +7,11 @@
 
 #include <utility>
 
-namespace keeler {
+namespace keeler::cli {
 
 /// Prints as fmt::print does, without control characters: titles and attributes come from files of unknown origin.
 template<class... Values> void print(fmt::format_string<Values...> format, Values&&... values) {
   fmt::print("{}", printable_text(fmt::format(format, std::forward<Values>(values)...)));
 }
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -8,15 +8,16 @@
 
 #include <cassert>
 
-namespace keeler {
+namespace keeler::cli {
 
 void write_profiles(const std::filesystem::path& file, std::span<const Patch> patches, std::size_t bins) {
   assert(bins > 0);
   auto rows = nlohmann::ordered_json::array();
   for (const Patch& patch : patches)
-    for (const RadialBin& bin : radial_profile(patch, bins)) {
+    for (const diagnostics::RadialBin& bin : diagnostics::radial_profile(patch, bins)) {
       const auto motion = [&](const Vec3& velocity, int axis) {
-        return bin.count > 0 ? nlohmann::ordered_json(velocity_si(patch, velocity)[axis]) : nlohmann::ordered_json("");
+        return bin.count > 0 ? nlohmann::ordered_json(diagnostics::velocity_si(patch, velocity)[axis])
+                             : nlohmann::ordered_json("");
       };
       rows.push_back({{"time_orbits", patch.time_orbits},
                       {"x_m", bin.x},
@@ -29,7 +30,7 @@ void write_profiles(const std::filesystem::path& file, std::span<const Patch> pa
                       {"dispersion_y_m_s", motion(bin.dispersion, 1)},
                       {"dispersion_z_m_s", motion(bin.dispersion, 2)}});
     }
-  write_table(file, csv_of(rows));
+  write_table(file, report::csv_of(rows));
 }
 
-} // namespace keeler
+} // namespace keeler::cli

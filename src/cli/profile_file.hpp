@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <span>
 
-namespace keeler {
+namespace keeler::cli {
 
 inline constexpr std::size_t default_profile_bins = 100;
 
@@ -14,4 +14,4 @@ inline constexpr std::size_t default_profile_bins = 100;
 /// IoError.
 void write_profiles(const std::filesystem::path& file, std::span<const Patch> patches, std::size_t bins);
 
-} // namespace keeler
+} // namespace keeler::cli

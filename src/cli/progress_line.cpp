@@ -12,7 +12,7 @@
 
 #include <unistd.h>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 constexpr int longest_bar = 30, shortest_bar = 10;
@@ -80,7 +80,7 @@ double ProgressLine::quiet_s() const {
 }
 
 // Shows nothing for short starts.
-void ProgressLine::show(const StartProgress& p) {
+void ProgressLine::show(const initial_conditions::StartProgress& p) {
   begin_phase("the start", 0.0);
   if (p.elapsed_s >= quiet_s() && due(p.elapsed_s, p.fraction == 1.0))
     print(p.fraction, {fmt::format("{:3.0f} % of the start", 100.0 * p.fraction), clock(p.remaining_s) + " left"});
@@ -88,7 +88,7 @@ void ProgressLine::show(const StartProgress& p) {
     next_s_ = 0.0; // the next phase counts its time from 0
 }
 
-void ProgressLine::show(const RunProgress& p) {
+void ProgressLine::show(const runs::RunProgress& p) {
   begin_phase("the steps", p.elapsed_s);
   if (!due(p.elapsed_s, p.step == p.end_step))
     return;
@@ -133,7 +133,7 @@ void ProgressLine::note(const std::string& text) {
 }
 
 // Shows neither a bar nor a time left: the time at which wakes settle is unknown.
-void ProgressLine::show(const ClumpingProgress& p) {
+void ProgressLine::show(const initial_conditions::ClumpingProgress& p) {
   if (!due(p.elapsed_s, p.settled))
     return;
   Parts parts = {fmt::format("{:.3f} orbits", p.orbits), clock(p.elapsed_s),
@@ -143,7 +143,7 @@ void ProgressLine::show(const ClumpingProgress& p) {
   } else if (p.settling->standing < p.criterion.min_standing) {
     parts.push_back("no wakes above the noise");
   } else {
-    const auto change = [&](const WindowMeans& means) {
+    const auto change = [&](const initial_conditions::WindowMeans& means) {
       return fmt::format("{:.0f} % (settled at {:.0f} %)", 100.0 * means.change(), 100.0 * means.tolerance);
     };
     parts.push_back(fmt::format("viscosity changes by {}, wake lengths by {} and {}", change(p.settling->viscosity),
@@ -152,4 +152,4 @@ void ProgressLine::show(const ClumpingProgress& p) {
   print(std::nullopt, parts);
 }
 
-} // namespace keeler
+} // namespace keeler::cli

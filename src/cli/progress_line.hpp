@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::cli {
 
 class ProgressLine {
 public:
@@ -21,9 +21,9 @@ public:
 
   explicit ProgressLine(const TalkOption& talk = {});
   ~ProgressLine();
-  void show(const StartProgress& progress);
-  void show(const RunProgress& progress);
-  void show(const ClumpingProgress& progress);
+  void show(const initial_conditions::StartProgress& progress);
+  void show(const runs::RunProgress& progress);
+  void show(const initial_conditions::ClumpingProgress& progress);
   void show(const Progress& progress);
   /// Shows progress only if the work takes longer than quiet_s().
   void show_if_long(const Progress& progress);
@@ -45,4 +45,4 @@ private:
   bool open_ = false; // the terminal shows a line without a line end
 };
 
-} // namespace keeler
+} // namespace keeler::cli

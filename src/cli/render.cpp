@@ -20,7 +20,7 @@
 #include <memory>
 #include <optional>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,14 +28,14 @@ namespace fs = std::filesystem;
 struct RenderOptions {
   std::optional<std::string> output;
   std::string path, colour = "height", theme = "dark";
-  int width = PictureOptions().width;
+  int width = render::PictureOptions().width;
   bool oblique = false, movie = false, series = false;
 };
 
 constexpr std::string_view png_signature = "\x89PNG";
 
-std::string_view signature_of(PageFormat format) {
-  return format == PageFormat::png ? png_signature : format == PageFormat::svg ? "<svg " : "%PDF-";
+std::string_view signature_of(plot::PageFormat format) {
+  return format == plot::PageFormat::png ? png_signature : format == plot::PageFormat::svg ? "<svg " : "%PDF-";
 }
 
 // Returns picture.png in a run's folder, or NAME.png beside a snapshot NAME.hdf.
@@ -46,11 +46,11 @@ fs::path picture_path(const RenderOptions& options) {
   return output_beside(path, fs::is_directory(path) ? path / "picture.png" : fs::path(path).replace_extension(".png"));
 }
 
-PictureOptions picture_options(const RenderOptions& options) {
-  PictureOptions picture;
+render::PictureOptions picture_options(const RenderOptions& options) {
+  render::PictureOptions picture;
   picture.width = options.width;
-  picture.theme = options.theme == "light" ? PictureTheme::light : PictureTheme::dark;
-  picture.colour = colour_field_named(options.colour);
+  picture.theme = options.theme == "light" ? render::PictureTheme::light : render::PictureTheme::dark;
+  picture.colour = render::colour_field_named(options.colour);
   picture.oblique = options.oblique;
   return picture;
 }
@@ -59,13 +59,13 @@ ExitCode draw_movie(const RenderOptions& options) {
   if (!fs::is_directory(options.path))
     throw UsageError(fmt::format("no movie of '{}': it is not a folder; name the folder of a run", options.path));
   const fs::path movie = options.output ? output_named(*options.output) : fs::path(options.path) / "movie.mp4";
-  require_movie_name(movie.string());
+  render::require_movie_name(movie.string());
   require_replaceable(movie, "a movie", "ftyp", 4);
-  const std::vector<fs::path> snapshots = snapshots_in(options.path);
-  PictureOptions picture = picture_options(options);
-  if (const std::string title = load_newest_patch(snapshots.front()).title; !title.empty())
+  const std::vector<fs::path> snapshots = runs::snapshots_in(options.path);
+  render::PictureOptions picture = picture_options(options);
+  if (const std::string title = runs::load_newest_patch(snapshots.front()).title; !title.empty())
     picture.title = title;
-  const auto patch = [&](std::size_t k) { return load_newest_patch(snapshots[k]).patches.back(); };
+  const auto patch = [&](std::size_t k) { return runs::load_newest_patch(snapshots[k]).patches.back(); };
   {
     ProgressLine line;
     render_movie(snapshots.size(), patch, movie.string(), picture,
@@ -79,14 +79,15 @@ ExitCode draw_series(const RenderOptions& options) {
   if (!fs::is_directory(options.path))
     throw UsageError(fmt::format("no plots of '{}': it is not a folder; name the folder of a run", options.path));
   const fs::path figure = options.output ? output_named(*options.output) : fs::path(options.path) / "series.svg";
-  const std::optional<PageFormat> format = is_stream(figure) ? PageFormat::svg : page_format(figure);
+  const std::optional<plot::PageFormat> format =
+      files::is_stream(figure) ? plot::PageFormat::svg : plot::page_format(figure);
   if (!format)
     throw UsageError(
         fmt::format("'{}' cannot be the plots: they are an .svg, .png or .pdf file; give it one of these endings",
                     figure.string()));
   require_replaceable(figure, "the plots", signature_of(*format));
-  const Figure plots = run_series_figure(options.path, options.theme == "light");
-  write_file(figure, figure_bytes(plots, *format, static_cast<double>(options.width) / plots.width));
+  const plot::Figure plots = run_report::run_series_figure(options.path, options.theme == "light");
+  files::write_file(figure, figure_bytes(plots, *format, static_cast<double>(options.width) / plots.width));
   print_written(figure);
   return ExitCode::done;
 }
@@ -94,12 +95,12 @@ ExitCode draw_series(const RenderOptions& options) {
 ExitCode render(const RenderOptions& options) {
   if (options.series)
     return draw_series(options);
-  PictureOptions drawing = picture_options(options);
+  render::PictureOptions drawing = picture_options(options);
   if (options.movie)
     return draw_movie(options);
   const fs::path picture = picture_path(options);
-  const StoredPatches stored = load_newest_patch(options.path);
-  if (!is_stream(picture) && picture.extension() != ".png")
+  const runs::StoredPatches stored = runs::load_newest_patch(options.path);
+  if (!files::is_stream(picture) && picture.extension() != ".png")
     throw UsageError(
         fmt::format("'{}' cannot be a picture: pictures are .png files; give it that ending", picture.string()));
   require_replaceable(picture, "a picture", png_signature);
@@ -122,14 +123,14 @@ void add_render(CLI::App& program, Action& action) {
       ->type_name("FILE");
   command.add_option("--width", options->width, "width of the picture (default: 1600)")
       ->type_name("PIXELS")
-      ->transform(whole_number_between(min_picture_width, max_picture_width, "a number of pixels"));
+      ->transform(whole_number_between(render::min_picture_width, render::max_picture_width, "a number of pixels"));
   one_of(command.add_option("--theme", options->theme, "background: dark (the default), or light for print"),
          {"dark", "light"});
   CLI::Option* const colour =
       command
           .add_option("--colour", options->colour,
                       "quantity shown by colours, with a colour bar (default: height, shades without a bar)")
-          ->type_name(fmt::format("{}", fmt::join(colour_field_names(), "|")));
+          ->type_name(fmt::format("{}", fmt::join(render::colour_field_names(), "|")));
   CLI::Option* const oblique = command.add_flag("--oblique", options->oblique,
                                                 "view the patch from 35 degrees above its plane instead of from above");
   CLI::Option* const movie = command.add_flag(
@@ -153,4 +154,4 @@ void add_render(CLI::App& program, Action& action) {
   });
 }
 
-} // namespace keeler
+} // namespace keeler::cli

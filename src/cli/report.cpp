@@ -13,7 +13,7 @@
 #include <memory>
 #include <optional>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 struct ReportOptions {
   std::string folder;
   std::optional<std::string> output;
-  RunReportOptions page;
+  run_report::RunReportOptions page;
   ThreadOption threads;
 };
 
@@ -35,9 +35,9 @@ ExitCode report(ReportOptions& options) {
   {
     ProgressLine line;
     options.page.progress = [&line](const Progress& progress) { line.show_if_long(progress); };
-    page = run_report(options.folder, options.page);
+    page = run_report::run_report(options.folder, options.page);
   }
-  write_text(file, page);
+  files::write_text(file, page);
   print_written(file);
   return ExitCode::done;
 }
@@ -60,4 +60,4 @@ void add_report(CLI::App& program, Action& action) {
   command.callback([options, &action] { action = [options] { return report(*options); }; });
 }
 
-} // namespace keeler
+} // namespace keeler::cli

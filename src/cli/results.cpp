@@ -13,7 +13,7 @@
 
 #include <unistd.h>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -41,7 +41,7 @@ fs::path output_named(const std::string& name) {
 }
 
 fs::path output_beside(const fs::path& source, const fs::path& name) {
-  if (reads_once(source) || descriptor_named(source))
+  if (files::reads_once(source) || files::descriptor_named(source))
     throw UsageError(
         fmt::format("'{}' is a pipe or a device, so the result has no default name; name the file to write "
                     "with -o",
@@ -50,7 +50,7 @@ fs::path output_beside(const fs::path& source, const fs::path& name) {
 }
 
 bool is_standard_output(const fs::path& file) {
-  return descriptor_named(file) == STDOUT_FILENO;
+  return files::descriptor_named(file) == STDOUT_FILENO;
 }
 
 void print_written(const fs::path& file) {
@@ -66,7 +66,7 @@ void require_folder_name(const fs::path& folder) {
 }
 
 void require_new_file(const fs::path& file, bool force, const std::string& what) {
-  if (is_stream(file))
+  if (files::is_stream(file))
     return;
   refuse_folder(file, what);
   if (fs::exists(file) && !force)
@@ -74,7 +74,7 @@ void require_new_file(const fs::path& file, bool force, const std::string& what)
         fmt::format("'{}' exists already ({} is never overwritten without --force); name another file or add "
                     "--force",
                     file.string(), what));
-  require_writable_folder(folder_of(file), file);
+  files::require_writable_folder(files::folder_of(file), file);
 }
 
 void refuse_own_source(const fs::path& file, const fs::path& source) {
@@ -86,19 +86,19 @@ void refuse_own_source(const fs::path& file, const fs::path& source) {
 
 void require_replaceable(const fs::path& file, const std::string& what, std::string_view bytes, std::size_t position) {
   assert(!bytes.empty());
-  if (is_stream(file))
+  if (files::is_stream(file))
     return;
   refuse_folder(file, what);
   const std::string existing = first_bytes(file, position + bytes.size());
   if (!existing.empty() && (existing.size() < position || existing.substr(position) != bytes))
     throw UsageError(fmt::format("'{}' exists already and is not {}, so it is not replaced; name another file",
                                  file.string(), what));
-  require_writable_folder(folder_of(file), file);
+  files::require_writable_folder(files::folder_of(file), file);
 }
 
 void write_table(const fs::path& file, const std::string& table) {
   require_replaceable(file, "a table with these columns", std::string_view(table).substr(0, table.find('\n') + 1));
-  write_text(file, table);
+  files::write_text(file, table);
 }
 
-} // namespace keeler
+} // namespace keeler::cli

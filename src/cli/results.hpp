@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace keeler {
+namespace keeler::cli {
 
 /// Returns the output file for a name from the command line; "-" is standard output. Throws UsageError for an empty
 /// name.
@@ -39,4 +39,4 @@ void require_replaceable(const std::filesystem::path& file, const std::string& w
 /// Writes a table to a new file, a device or a pipe, or over a table with equal columns. Throws UsageError, IoError.
 void write_table(const std::filesystem::path& file, const std::string& table);
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -13,7 +13,7 @@
 #include <memory>
 #include <optional>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 struct JobOptions {
@@ -27,9 +27,9 @@ struct JobOptions {
 };
 
 // Returns the options of the run. Only rank 0 gets functions for progress and notices.
-RunOptions run_options(const JobOptions& job, const std::vector<std::string>& arguments, ProgressLine& line,
-                       const Communicator& ranks) {
-  RunOptions options;
+runs::RunOptions run_options(const JobOptions& job, const std::vector<std::string>& arguments, ProgressLine& line,
+                             const Communicator& ranks) {
+  runs::RunOptions options;
   options.ranks = ranks;
   options.folder = job.folder;
   options.force = job.force;
@@ -41,13 +41,13 @@ RunOptions run_options(const JobOptions& job, const std::vector<std::string>& ar
   options.arguments = arguments;
   if (!ranks.is_root())
     return options;
-  options.start_progress = [&line](const StartProgress& progress) { line.show(progress); };
-  options.progress = [&line](const RunProgress& progress) { line.show(progress); };
+  options.start_progress = [&line](const initial_conditions::StartProgress& progress) { line.show(progress); };
+  options.progress = [&line](const runs::RunProgress& progress) { line.show(progress); };
   options.notice = job.talk.notice();
   return options;
 }
 
-ExitCode report(const JobOptions& job, const RunResult& result, const Communicator& ranks) {
+ExitCode report(const JobOptions& job, const runs::RunResult& result, const Communicator& ranks) {
   if (!ranks.is_root())
     return result.finished ? ExitCode::done : ExitCode::stopped;
   print_record(result.summary, job.json);
@@ -96,7 +96,7 @@ void add_run(CLI::App& program, Action& action, const std::vector<std::string>& 
       });
       if (ranks.is_root())
         job->talk.say_scene(scene);
-      RunResult result;
+      runs::RunResult result;
       {
         ProgressLine line(job->talk);
         result = start_run(scene, run_options(*job, arguments, line, ranks), requests_from_signals());
@@ -120,7 +120,7 @@ void add_resume(CLI::App& program, Action& action, const std::vector<std::string
       job->threads.apply();
       if (ranks.is_root())
         job->talk.say_program();
-      RunResult result;
+      runs::RunResult result;
       {
         ProgressLine line(job->talk);
         result = resume_run(run_options(*job, arguments, line, ranks), requests_from_signals());
@@ -130,4 +130,4 @@ void add_resume(CLI::App& program, Action& action, const std::vector<std::string
   });
 }
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -1,6 +1,6 @@
 #include "scene_arguments.hpp"
 
-namespace keeler {
+namespace keeler::cli {
 
 CLI::Option* SceneArguments::add_to(CLI::App& command) {
   command.add_option("--set", overrides, "override a key of the scene; can be repeated: --set particles.count=500")
@@ -9,4 +9,4 @@ CLI::Option* SceneArguments::add_to(CLI::App& command) {
   return command.add_option("SCENE", path, "scene file (TOML), or the name of an example")->type_name("");
 }
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::cli {
 
 struct SceneArguments {
   std::string path;
@@ -23,4 +23,4 @@ struct SceneArguments {
   Scene load(const std::optional<std::string>& from = {}) const { return load_scene(path, overrides, from); }
 };
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -11,7 +11,7 @@
 #include <array>
 #include <cassert>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 constexpr double degree = pi / 180.0;
@@ -76,7 +76,7 @@ nlohmann::ordered_json Sights::json() const {
   for (const Elevation& e : elevations_) {
     nlohmann::ordered_json entries = nlohmann::ordered_json::array();
     for (std::size_t k = 0; k < e.sights.size(); ++k) {
-      const Occultation& o = e.sights[k];
+      const diagnostics::Occultation& o = e.sights[k];
       entries.push_back({{"azimuth_degrees", e.azimuths[k]},
                          {"transmission", *o.transmission.value},
                          {"transmission_error", o.ray_error},
@@ -99,22 +99,21 @@ nlohmann::ordered_json Sights::json() const {
 }
 
 void Sights::print() const {
-  keeler::print("lines of sight       {} rays, footprints of {} x {} m\n", rays_.size(),
-                format_number(rays_.footprint_x(), 3), format_number(rays_.footprint_y(), 3));
+  cli::print("lines of sight       {} rays, footprints of {} x {} m\n", rays_.size(),
+             format_number(rays_.footprint_x(), 3), format_number(rays_.footprint_y(), 3));
   for (const Elevation& e : elevations_) {
     for (std::size_t k = 0; k < e.sights.size(); ++k) {
-      const Occultation& o = e.sights[k];
-      keeler::print(
-          "  B {:<5} phi {:<5} T {:.4f} +- {:.4f}, normal optical depth {}; flicker: variance {}, skewness {}, "
-          "kurtosis {}\n",
-          format_number(e.degrees, 3), format_number(e.azimuths[k], 3), *o.transmission.value, o.ray_error,
-          known(o.normal_optical_depth, 4), format_number(o.flicker.variance, 3), known(o.flicker.skewness, 3),
-          known(o.flicker.kurtosis, 3));
+      const diagnostics::Occultation& o = e.sights[k];
+      cli::print("  B {:<5} phi {:<5} T {:.4f} +- {:.4f}, normal optical depth {}; flicker: variance {}, skewness {}, "
+                 "kurtosis {}\n",
+                 format_number(e.degrees, 3), format_number(e.azimuths[k], 3), *o.transmission.value, o.ray_error,
+                 known(o.normal_optical_depth, 4), format_number(o.flicker.variance, 3), known(o.flicker.skewness, 3),
+                 known(o.flicker.kurtosis, 3));
     }
     if (const auto asymmetry = azimuthal_asymmetry(e.sights))
-      keeler::print("  B {:<5} azimuthal asymmetry {:.3g}, brightest at {} degrees\n", format_number(e.degrees, 3),
-                    asymmetry->amplitude, format_number(asymmetry->brightest_azimuth / degree, 4));
+      cli::print("  B {:<5} azimuthal asymmetry {:.3g}, brightest at {} degrees\n", format_number(e.degrees, 3),
+                 asymmetry->amplitude, format_number(asymmetry->brightest_azimuth / degree, 4));
   }
 }
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::cli {
 
 struct SightOptions {
   std::vector<double> elevations, azimuths; ///< degrees
@@ -32,11 +32,11 @@ private:
   struct Elevation {
     double degrees;
     std::vector<double> azimuths; // degrees
-    std::vector<Occultation> sights;
+    std::vector<diagnostics::Occultation> sights;
   };
 
-  RayLattice rays_;
+  diagnostics::RayLattice rays_;
   std::vector<Elevation> elevations_;
 };
 
-} // namespace keeler
+} // namespace keeler::cli

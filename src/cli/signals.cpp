@@ -6,11 +6,11 @@
 
 #include <unistd.h>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 // Global, since a signal handler has no other access.
-RunRequests requests;
+runs::RunRequests requests;
 std::atomic<double> first_stop_s = 0.0;
 
 constexpr double one_request_s = 0.25;
@@ -67,7 +67,7 @@ void release_signals() {
   mask_signals(SIG_UNBLOCK);
 }
 
-RunRequests& requests_from_signals() {
+runs::RunRequests& requests_from_signals() {
   for (const int signal : stops)
     install(signal, ask_to_stop);
   install(SIGALRM, give_up);
@@ -76,4 +76,4 @@ RunRequests& requests_from_signals() {
   return requests;
 }
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -10,7 +10,7 @@
 
 #include <string>
 
-namespace keeler {
+namespace keeler::cli {
 
 /// Blocks these signals, also across exec().
 void hold_signals();
@@ -18,7 +18,7 @@ void hold_signals();
 void release_signals();
 
 /// Installs the handlers and returns the requests that they set. A stop also ends waiting for a pipe or a device.
-RunRequests& requests_from_signals();
+runs::RunRequests& requests_from_signals();
 
 /// Returns make(), for work without checkpoints: the first signal interrupts it at once, and Error with this message is
 /// thrown.
@@ -31,4 +31,4 @@ template<class Make> auto unless_stopped(const std::string& message, const Make&
   }
 }
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -18,7 +18,7 @@
 #include <algorithm>
 #include <memory>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -67,7 +67,7 @@ void act(CLI::App& command, Action& action, const Words& arguments, const std::s
   });
 }
 
-ExitCode of_finders(StudyOptions<FinderStudySettings>& options) {
+ExitCode of_finders(StudyOptions<study::FinderStudySettings>& options) {
   bool finished = false;
   try {
     const Interruptible measurement(requests_from_signals().give_up); // a second signal interrupts a measurement
@@ -81,7 +81,7 @@ ExitCode of_finders(StudyOptions<FinderStudySettings>& options) {
 }
 
 void add_finders(CLI::App& study, Action& action, const Words& arguments) {
-  const auto options = std::make_shared<StudyOptions<FinderStudySettings>>();
+  const auto options = std::make_shared<StudyOptions<study::FinderStudySettings>>();
   CLI::App& command = *study.add_subcommand(
       "finders", "the collision finders: times, errors and the paper's claims, on four states; after a stop (exit 75) "
                  "the same command continues");
@@ -93,13 +93,13 @@ void add_finders(CLI::App& study, Action& action, const Words& arguments) {
   act(command, action, arguments, options, of_finders);
 }
 
-ExitCode of_scene(StudyOptions<SceneStudySettings>& options) {
-  SceneStudySettings& settings = options.settings;
+ExitCode of_scene(StudyOptions<study::SceneStudySettings>& options) {
+  study::SceneStudySettings& settings = options.settings;
   settings.scene = options.scene.path;
   settings.overrides = options.scene.overrides;
   if (settings.jobs == 0)
     settings.jobs = static_cast<std::size_t>(std::max(1, threads()));
-  const BatchResult result = options.carry_out([&] { return study_scene(settings, requests_from_signals()); });
+  const batch::BatchResult result = options.carry_out([&] { return study_scene(settings, requests_from_signals()); });
   if (result.stopped)
     return stopped();
   print_results(settings.folder, {"report.md", "report.html", "study.csv", "settings.csv", "figures"});
@@ -115,10 +115,10 @@ ExitCode of_scene(StudyOptions<SceneStudySettings>& options) {
   return result.failed > 0 ? ExitCode::run_time : ExitCode::done;
 }
 
-void add_of_scene(CLI::App& study, Action& action, const Words& arguments, SceneStudyKind kind, const std::string& name,
-                  const std::string& about) {
-  const auto options = std::make_shared<StudyOptions<SceneStudySettings>>();
-  SceneStudySettings& settings = options->settings;
+void add_of_scene(CLI::App& study, Action& action, const Words& arguments, study::SceneStudyKind kind,
+                  const std::string& name, const std::string& about) {
+  const auto options = std::make_shared<StudyOptions<study::SceneStudySettings>>();
+  study::SceneStudySettings& settings = options->settings;
   settings.kind = kind;
   settings.jobs = 0; // one per thread of the machine
   CLI::App& command =
@@ -158,15 +158,15 @@ void add_study(CLI::App& program, Action& action, const Words& arguments) {
   CLI::App& command = *program.add_subcommand("study", "carry out an experiment and write a report on it");
   command.require_subcommand(1);
   add_finders(command, action, arguments);
-  const auto add = [&](SceneStudyKind kind, const std::string& name, const std::string& about) {
+  const auto add = [&](study::SceneStudyKind kind, const std::string& name, const std::string& about) {
     add_of_scene(command, action, arguments, kind, name, about);
   };
-  add(SceneStudyKind::step, "step", "your scene with several step lengths: cost and effect");
-  add(SceneStudyKind::kicks, "kicks", "your scene with several kick intervals of self-gravity");
-  add(SceneStudyKind::mesh, "mesh", "your scene with several solvers and accuracies of self-gravity");
-  add(SceneStudyKind::box, "box", "your scene in boxes of several sizes");
-  add(SceneStudyKind::sizes, "sizes", "your scene without the smallest particles of its distribution");
+  add(study::SceneStudyKind::step, "step", "your scene with several step lengths: cost and effect");
+  add(study::SceneStudyKind::kicks, "kicks", "your scene with several kick intervals of self-gravity");
+  add(study::SceneStudyKind::mesh, "mesh", "your scene with several solvers and accuracies of self-gravity");
+  add(study::SceneStudyKind::box, "box", "your scene in boxes of several sizes");
+  add(study::SceneStudyKind::sizes, "sizes", "your scene without the smallest particles of its distribution");
   refuse_gravity(command);
 }
 
-} // namespace keeler
+} // namespace keeler::cli

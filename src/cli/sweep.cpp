@@ -17,29 +17,29 @@
 #include <algorithm>
 #include <memory>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 struct SweepOptions {
-  SweepSettings settings;
+  sweep::SweepSettings settings;
   bool json = false;
   TalkOption talk;
 };
 
-void print_json(const SweepResult& result) {
-  const Json json = {
+void print_json(const sweep::SweepResult& result) {
+  const batch::Json json = {
       {"runs", result.runs}, {"finished", result.finished}, {"failed", result.failed}, {"points", result.points}};
   print("{}\n", json_text(json, 2));
 }
 
-void print_text(const SweepResult& result, const std::filesystem::path& folder) {
+void print_text(const sweep::SweepResult& result, const std::filesystem::path& folder) {
   print("{}: {} finished, {} failed\n", pluralize(result.runs, "run"), result.finished, result.failed);
   for (const char* const name : {"sweep.csv", "points.csv", "report.md", "figure.svg"})
     if (std::filesystem::exists(folder / name))
       print("{}\n", (folder / name).string());
 }
 
-void say_failed(const SweepResult& result, const std::filesystem::path& folder) {
+void say_failed(const sweep::SweepResult& result, const std::filesystem::path& folder) {
   if (!result.figure_fault.empty())
     say(result.figure_fault + "; the tables and report.md are written");
   if (result.failed > result.unmeasurable)
@@ -54,16 +54,16 @@ void say_failed(const SweepResult& result, const std::filesystem::path& folder) 
 
 ExitCode carry_out(SweepOptions& options) {
   options.talk.say_program();
-  SweepSettings& settings = options.settings;
+  sweep::SweepSettings& settings = options.settings;
   require_folder_name(settings.folder);
   if (settings.jobs == 0)
     settings.jobs = static_cast<std::size_t>(std::max(1, threads() / settings.threads_per_run));
-  SweepResult result;
+  sweep::SweepResult result;
   {
     ProgressLine line(options.talk);
     settings.progress = [&](const Progress& progress) { line.show(progress); };
     settings.notice = [&](const std::string& text) { line.note(text); };
-    result = sweep(settings, requests_from_signals());
+    result = sweep::sweep(settings, requests_from_signals());
   }
   if (result.stopped) {
     say(result.began           ? "stopped, each run with a checkpoint; the same command continues from here"
@@ -88,7 +88,7 @@ ExitCode carry_out(SweepOptions& options) {
 
 void add_sweep(CLI::App& program, Action& action) {
   const auto options = std::make_shared<SweepOptions>();
-  SweepSettings& settings = options->settings;
+  sweep::SweepSettings& settings = options->settings;
   settings.jobs = 0; // as the threads of the machine allow
   CLI::App& command = *program.add_subcommand(
       "sweep", "run a scene over a grid of keys and seeds, with tables and a figure; after a stop or kill the same "
@@ -115,4 +115,4 @@ void add_sweep(CLI::App& program, Action& action) {
   });
 }
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-namespace keeler {
+namespace keeler::cli {
 
 void TalkOption::add_to(CLI::App& command) {
   CLI::Option* const no_notes = command.add_flag("-q,--quiet", quiet, "print errors only, no progress and no notes");
@@ -34,8 +34,8 @@ void TalkOption::say_program() const {
 void TalkOption::say_scene(const Scene& scene) const {
   if (verbose)
     say(fmt::format("finder {}, {}", scene.collisions.finder,
-                    scene.gravity ? "gravity " + in_words(chosen_for(scene.particles.count, *scene.gravity))
+                    scene.gravity ? "gravity " + advice::in_words(chosen_for(scene.particles.count, *scene.gravity))
                                   : "no gravity"));
 }
 
-} // namespace keeler
+} // namespace keeler::cli

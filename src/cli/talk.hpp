@@ -8,7 +8,7 @@
 #include <functional>
 #include <string>
 
-namespace keeler {
+namespace keeler::cli {
 
 struct TalkOption {
   bool quiet = false, verbose = false;
@@ -24,4 +24,4 @@ struct TalkOption {
   void say_scene(const Scene& scene) const;
 };
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -8,7 +8,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-namespace keeler {
+namespace keeler::cli {
 
 /// Returns the columns of the terminal at a descriptor; 80 if they are unknown or it is not a terminal.
 inline int terminal_width(int descriptor) {
@@ -25,4 +25,4 @@ inline std::string progress_bar(double fraction, int columns) {
   return "[" + std::string(filled, '#') + std::string(inside - filled, '.') + "]";
 }
 
-} // namespace keeler
+} // namespace keeler::cli

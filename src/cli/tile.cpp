@@ -22,7 +22,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 struct TileOptions {
@@ -33,26 +33,26 @@ struct TileOptions {
 };
 
 // Writes the tiled patch in pieces, so that it is never whole in memory.
-void write(const TiledPatch& tiled, const std::string& file, const SnapshotMeta& meta) {
+void write(const initial_conditions::TiledPatch& tiled, const std::string& file, const io::SnapshotMeta& meta) {
   const Patch frame = tiled.some(0, 0);
-  SnapshotFile snapshot(file, frame, tiled.size(), tiled.rough(), meta);
-  for (std::size_t first = 0; first < tiled.size(); first += SnapshotFile::piece)
-    snapshot.add(tiled.some(first, std::min(SnapshotFile::piece, tiled.size() - first)));
+  io::SnapshotFile snapshot(file, frame, tiled.size(), tiled.rough(), meta);
+  for (std::size_t first = 0; first < tiled.size(); first += io::SnapshotFile::piece)
+    snapshot.add(tiled.some(first, std::min(io::SnapshotFile::piece, tiled.size() - first)));
   snapshot.finish();
 }
 
 ExitCode tile(const TileOptions& options, const std::vector<std::string>& arguments) {
   assert(options.nx > 0 && options.ny > 0);
   options.threads.apply();
-  refuse_stream(output_named(options.output), "HDF5");
+  files::refuse_stream(output_named(options.output), "HDF5");
   require_new_file(options.output, options.force, "a state");
-  Snapshot snapshot = read_snapshot(options.file);
+  io::Snapshot snapshot = io::read_snapshot(options.file);
   // The scene cannot reproduce this state, so the scene in the snapshot starts from the file, with all particles.
   const Scene scene = parse_scene(snapshot.meta.scene, options.file, {"start.keep=1.0"}, options.output);
-  const Patch patch = patch_from_snapshot(std::move(snapshot.patch), options.file, scene);
-  require_no_overlap(patch, "'" + options.file + "'");
-  const TiledPatch tiled(patch, options.nx, options.ny);
-  write(tiled, options.output, {scene.resolved, collect_provenance(arguments)});
+  const Patch patch = initial_conditions::patch_from_snapshot(std::move(snapshot.patch), options.file, scene);
+  cells::require_no_overlap(patch, "'" + options.file + "'");
+  const initial_conditions::TiledPatch tiled(patch, options.nx, options.ny);
+  write(tiled, options.output, {scene.resolved, io::collect_provenance(arguments)});
   const ShearingBox box = tiled.some(0, 0).box;
   print("{} in {} m x {} m, {} x {} copies of {}: {}\n", pluralize(tiled.size(), "particle"),
         format_number(box.size_x, 5), format_number(box.size_y, 5), options.nx, options.ny, options.file,
@@ -85,4 +85,4 @@ void add_tile(CLI::App& program, Action& action, const std::vector<std::string>&
       [options, arguments, &action] { action = [options, arguments] { return tile(*options, arguments); }; });
 }
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -22,13 +22,13 @@
 #include <cassert>
 #include <memory>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 struct TuneOptions {
   SceneArguments scene;
-  TuneSettings settings;
-  std::string quality = default_quality;
+  tune::TuneSettings settings;
+  std::string quality = scene::default_quality;
   std::optional<double> force_error, physics_error;
   std::optional<std::string> output;
   bool force = false, json = false;
@@ -36,9 +36,9 @@ struct TuneOptions {
   TalkOption talk;
 };
 
-TuneSettings tolerances(const TuneOptions& options) {
-  TuneSettings settings = options.settings;
-  for (const Quality& quality : qualities)
+tune::TuneSettings tolerances(const TuneOptions& options) {
+  tune::TuneSettings settings = options.settings;
+  for (const scene::Quality& quality : scene::qualities)
     if (options.quality == quality.name) {
       settings.force_error = options.force_error.value_or(quality.force_error);
       settings.physics_error = options.physics_error.value_or(quality.physics_error);
@@ -59,41 +59,41 @@ void require_writable_output(const TuneOptions& options) {
     throw UsageError("--json and --output are both for standard output; name a file for the scene");
 }
 
-Tuning measure(const Scene& scene, TuneSettings settings, const TalkOption& talk) {
+tune::Tuning measure(const Scene& scene, tune::TuneSettings settings, const TalkOption& talk) {
   ProgressLine line(talk);
   settings.progress = [&line](const Progress& progress) { line.show(progress); };
   return unless_stopped("stopped before all was measured (on request), so nothing is written",
-                        [&] { return tune(scene, settings); });
+                        [&] { return tune::tune(scene, settings); });
 }
 
-nlohmann::ordered_json as_json(const Tuning& t, const std::vector<ChosenKey>& keys) {
+nlohmann::ordered_json as_json(const tune::Tuning& t, const std::vector<tune::ChosenKey>& keys) {
   nlohmann::ordered_json json;
-  for (const ChosenKey& key : keys)
+  for (const tune::ChosenKey& key : keys)
     json["keys"][key.path] = key.value;
   assert(t.gravity.empty() || t.chosen_gravity < t.gravity.size());
   assert(t.kicks.empty() || t.chosen_kicks < t.kicks.size());
   json["particles"] = t.particles;
   json["orbits"] = t.orbits;
   json["gravity"] = nlohmann::ordered_json::array();
-  for (const GravityBenchRow& row : t.gravity)
+  for (const bench::GravityBenchRow& row : t.gravity)
     json["gravity"].push_back({{"solver", row.choice.solver},
                                {"settings", row.choice.text},
                                {"error_rms", row.errors.rms},
                                {"ns_per_particle", row.ns_per_particle}});
   json["kicks"] = nlohmann::ordered_json::array();
-  for (const KickProbe& probe : t.kicks)
+  for (const tune::KickProbe& probe : t.kicks)
     json["kicks"].push_back({{"kick_interval_orbits", probe.interval},
                              {"unresolved_contacts_share", probe.unresolved},
                              {"unresolved_contacts_share_error", probe.unresolved_error},
                              {"physics_error", probe.physics_error()}});
   json["steps"] = nlohmann::ordered_json::array();
-  for (const StepProbe& probe : t.steps)
+  for (const tune::StepProbe& probe : t.steps)
     json["steps"].push_back({{"step_orbits", probe.step},
                              {"drifts_per_kick", probe.drifts},
                              {"contacts_per_particle_drift", probe.contacts},
                              {"processor_s_per_orbit", probe.seconds}});
   json["threads"] = nlohmann::ordered_json::array();
-  for (const ThreadProbe& probe : t.threads)
+  for (const tune::ThreadProbe& probe : t.threads)
     json["threads"].push_back({{"threads", probe.threads}, {"speedup", probe.speedup}});
   json["chosen"] = {{"threads", t.chosen_threads},
                     {"error_rms", t.gravity.empty() ? nlohmann::ordered_json()
@@ -110,10 +110,10 @@ const char* mark(bool chosen) {
   return chosen ? "  <-" : "";
 }
 
-void print_text(const Tuning& t) {
+void print_text(const tune::Tuning& t) {
   print("{} in states up to {:.3g} orbits old, one thread\n", pluralize(t.particles, "particle"), t.orbits);
   if (!t.gravity.empty())
-    print("errors must be below {} of the tolerances, since seeds differ\n", margin_for_seeds);
+    print("errors must be below {} of the tolerances, since seeds differ\n", tune::margin_for_seeds);
   if (!t.gravity.empty())
     print("\n{:<8}{:<22}{:>14}{:>18}\n", "solver", "settings", "force error", "ns per particle");
   for (std::size_t k = 0; k < t.gravity.size(); ++k)
@@ -131,7 +131,7 @@ void print_text(const Tuning& t) {
     print("{:<16g}{:>16}{:>28.2g}{:>28.3g}{}\n", t.steps[k].step, t.steps[k].drifts, t.steps[k].contacts,
           t.steps[k].seconds, mark(k == t.chosen_step));
   print("\n");
-  for (const ThreadProbe& probe : t.threads)
+  for (const tune::ThreadProbe& probe : t.threads)
     if (probe.threads > 1)
       print("{}: {:.2f} times as fast{}\n", pluralize(probe.threads, "thread"), probe.speedup,
             mark(probe.threads == t.chosen_threads));
@@ -139,15 +139,15 @@ void print_text(const Tuning& t) {
         format_number(t.wall_seconds, 2), pluralize(t.chosen_threads, "thread"));
 }
 
-void print_keys(const std::vector<ChosenKey>& keys) {
-  for (const ChosenKey& key : keys) {
+void print_keys(const std::vector<tune::ChosenKey>& keys) {
+  for (const tune::ChosenKey& key : keys) {
     if (!key.comment.empty())
       print("# tune: {}\n", key.comment);
     print("{} = {}\n", key.path, key.value);
   }
 }
 
-void warn(const Tuning& t) {
+void warn(const tune::Tuning& t) {
   if (!t.meets_force_error)
     say("no solver meets the force error with a margin for other seeds; the most accurate one is chosen");
   if (!t.meets_physics_error)
@@ -158,12 +158,12 @@ void warn(const Tuning& t) {
 ExitCode tune_scene(const TuneOptions& options) {
   options.threads.apply();
   options.talk.say_program();
-  TuneSettings settings = tolerances(options);
+  tune::TuneSettings settings = tolerances(options);
   settings.max_threads = threads();
   const Scene scene = options.scene.load();
   require_writable_output(options);
-  const Tuning tuning = measure(scene, settings, options.talk);
-  const std::vector<ChosenKey> keys = chosen_keys(tuning, settings, scene);
+  const tune::Tuning tuning = measure(scene, settings, options.talk);
+  const std::vector<tune::ChosenKey> keys = chosen_keys(tuning, settings, scene);
   if (options.json)
     print("{}\n", json_text(as_json(tuning, keys), 2));
   else if (!fills_standard_output(options))
@@ -171,7 +171,7 @@ ExitCode tune_scene(const TuneOptions& options) {
   if (!options.talk.quiet)
     warn(tuning);
   if (options.output) {
-    write_text(output_named(*options.output), tuned_scene(scene, keys));
+    files::write_text(output_named(*options.output), tuned_scene(scene, keys));
     if (!options.json)
       print_written(output_named(*options.output));
   } else if (!options.json) {
@@ -189,7 +189,7 @@ void add_tune(CLI::App& program, Action& action) {
               "scene's evolved state");
   options->scene.add_to(command)->required();
   std::vector<std::string> names;
-  for (const Quality& quality : qualities)
+  for (const scene::Quality& quality : scene::qualities)
     names.emplace_back(quality.name);
   one_of(command.add_option("--quality", options->quality, "set of tolerances (default: balanced)"), names);
   command
@@ -213,4 +213,4 @@ void add_tune(CLI::App& program, Action& action) {
   command.callback([options, &action] { action = [options] { return tune_scene(*options); }; });
 }
 
-} // namespace keeler
+} // namespace keeler::cli

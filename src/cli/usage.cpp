@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 std::vector<std::string> option_names(const CLI::App& command) {
@@ -89,4 +89,4 @@ std::string usage_fault(const CLI::App& program, const CLI::ParseError& error) {
   return fmt::format("{}; {}", describe_fault(command, error), or_help(command, ""));
 }
 
-} // namespace keeler
+} // namespace keeler::cli

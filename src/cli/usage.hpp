@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::cli {
 
 /// Returns the full name of a command: "keeler bench drift".
 std::string full_name(const CLI::App& command);
@@ -24,4 +24,4 @@ std::string placeholder_of(const CLI::Option& option);
 /// found.
 std::string usage_fault(const CLI::App& program, const CLI::ParseError& error);
 
-} // namespace keeler
+} // namespace keeler::cli

@@ -18,7 +18,7 @@
 #include <string_view>
 #include <thread>
 
-namespace keeler {
+namespace keeler::cli {
 namespace {
 
 constexpr int label_columns = 18, value_columns = 10;
@@ -29,9 +29,9 @@ struct Line {
 
   /// True for columns that accumulate since the start of the run; their rate per orbit is shown.
   bool counts() const {
-    const auto& columns = series_columns();
-    const auto same = [&](const SeriesColumn& known) { return std::string_view(known.name) == column; };
-    return std::find_if(columns.begin(), columns.end(), same)->kind != ColumnKind::value;
+    const auto& columns = runs::series_columns();
+    const auto same = [&](const runs::SeriesColumn& known) { return std::string_view(known.name) == column; };
+    return std::find_if(columns.begin(), columns.end(), same)->kind != runs::ColumnKind::value;
   }
 };
 
@@ -48,7 +48,7 @@ constexpr Line lines[] = {
 };
 
 // Returns the finite values of a column, or its rates between rows if it accumulates.
-std::vector<double> values_of(const SeriesTable& series, const Line& line) {
+std::vector<double> values_of(const io::SeriesTable& series, const Line& line) {
   const std::vector<double>& times = series.of("time_orbits");
   const std::vector<double>& column = series.of(line.column);
   std::vector<double> values;
@@ -89,13 +89,13 @@ std::string remaining(double seconds) {
   return fmt::format("{}:{:02}:{:02} left", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
-std::string state_and_time_left(const RunView& view) {
+std::string state_and_time_left(const runs::RunView& view) {
   const std::optional<double> left = view.remaining_s(static_cast<double>(std::time(nullptr)));
   return left ? view.state() + ", " + remaining(*left) : view.state();
 }
 
 // Returns the text of the screen; no line is longer than `width`.
-std::string text_of(const RunView& view, const std::string& folder, int width) {
+std::string text_of(const runs::RunView& view, const std::string& folder, int width) {
   const auto columns = static_cast<std::size_t>(width);
   std::vector<std::string> text = {
       folder, state_and_time_left(view),
@@ -127,7 +127,7 @@ std::string text_of(const RunView& view, const std::string& folder, int width) {
 ExitCode watch(const std::string& folder) {
   const bool terminal = isatty(STDOUT_FILENO) == 1;
   for (;;) {
-    const RunView view = view_run(folder);
+    const runs::RunView view = runs::view_run(folder);
     const std::string text = text_of(view, folder, terminal_width(STDOUT_FILENO));
     if (terminal)
       fmt::print("\033[H\033[J");
@@ -149,4 +149,4 @@ void add_watch(CLI::App& program, Action& action) {
   command.callback([folder, &action] { action = [folder] { return watch(*folder); }; });
 }
 
-} // namespace keeler
+} // namespace keeler::cli

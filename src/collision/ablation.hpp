@@ -9,7 +9,7 @@
 #include <string>
 #endif
 
-namespace keeler {
+namespace keeler::collision {
 
 enum class Acceleration {
   lists,         ///< neighbour lists that last more than a step
@@ -68,4 +68,4 @@ constexpr bool without(Acceleration) {
 
 #endif
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 class BroadPhase {
 public:
@@ -98,4 +98,4 @@ private:
   bool through_grid_ = false;
 };
 
-} // namespace keeler
+} // namespace keeler::collision

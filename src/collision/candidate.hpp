@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 /// A pair that may touch in the step: the lower id first, and the image of the particle with the higher.
 struct Candidate {
@@ -26,4 +26,4 @@ inline void sort_by_ids(std::vector<Candidate>& candidates, const std::vector<st
             [&](const Candidate& a, const Candidate& b) { return key(a) < key(b); });
 }
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 /// Numbers the changes of all domains; 0 means none.
 using ChangeNumber = std::uint32_t;
@@ -116,4 +116,4 @@ private:
   std::vector<ChangeNumber> newest_; // valid if the particle has changed in this step
 };
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace keeler {
+namespace keeler::collision {
 
 /// Energies in kg m² rad⁻².
 struct Contact {
@@ -19,4 +19,4 @@ struct Contact {
   std::uint32_t low = 0, high = 0; ///< indices of the particles, the lower id first
 };
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -23,7 +23,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 /// A visitor for the concept's check of visit_partners().
 struct PartnerVisitor {
@@ -34,7 +34,7 @@ struct PartnerVisitor {
 template<class Store>
 concept OrbitStore = requires(Store& orbits, std::uint32_t i, double time, const Event& event, const Elements& elements,
                               const Vec3& spin, const Contact& contact, const CollisionRecord& record,
-                              std::span<const Query> queries, std::span<FinderResult> results,
+                              std::span<const finders::Query> queries, std::span<finders::FinderResult> results,
                               const PartnerVisitor& visit) {
   // the present orbit, the number of changes in the step that led to it, and the time of the last
   { orbits.body(i) } -> std::same_as<const Body&>;
@@ -116,14 +116,14 @@ private:
   };
 
   // Returns the question to the finder, the lower id first; `image` is that of particle j.
-  Query query_of(std::size_t i, std::size_t j, const Image& image) const {
+  finders::Query query_of(std::size_t i, std::size_t j, const Image& image) const {
     const bool ordered = step_.particles.ids[i] < step_.particles.ids[j];
     const Vec3 shift = step_.box.displacement(ordered ? image : -image, step_.offset);
     return {static_cast<std::uint32_t>(ordered ? i : j), static_cast<std::uint32_t>(ordered ? j : i), shift.x(),
             shift.y(), std::max(orbits_.last_change(i), orbits_.last_change(j))};
   }
 
-  Event event_of(const Query& query, double time, const Partner& p) const {
+  Event event_of(const finders::Query& query, double time, const Partner& p) const {
     assert(time >= query.start && time < step_.end());
     const std::vector<std::uint64_t>& ids = step_.particles.ids;
     return {time,
@@ -227,7 +227,7 @@ private:
 
   // Completes `touch` with the spins before the contact, and sets `spins` to the values after it.
   Sliding apply_friction(const Event& event, Touch touch, double normal_impulse, Spins& spins) const {
-    const SpinTurn turn(event.time);
+    const particles::SpinTurn turn(event.time);
     spins = {step_.particles.spins[event.low], step_.particles.spins[event.high]};
     touch.spin_a = turn.from_epoch(spins.low);
     touch.spin_b = turn.from_epoch(spins.high);
@@ -295,7 +295,7 @@ private:
     results_.resize(queries_.size());
     orbits_.find_all(queries_, results_);
     for (std::size_t k = 0; k < queries_.size(); ++k) {
-      if (results_[k].exit == FinderExit::not_a_number)
+      if (results_[k].exit == finders::FinderExit::not_a_number)
         throw InvariantError(fmt::format("the collision search of particles {} and {} met numbers that are not finite",
                                          step_.particles.ids[queries_[k].low], step_.particles.ids[queries_[k].high]));
       if (results_[k].contact())
@@ -311,8 +311,8 @@ private:
 
   // the next search: partners, the query of each, and its answer
   std::vector<Partner> partners_;
-  std::vector<Query> queries_;
-  std::vector<FinderResult> results_;
+  std::vector<finders::Query> queries_;
+  std::vector<finders::FinderResult> results_;
 };
 
-} // namespace keeler
+} // namespace keeler::collision

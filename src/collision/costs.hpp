@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace keeler {
+namespace keeler::collision {
 
 struct DriftCosts {
   // wall time, s
@@ -36,4 +36,4 @@ struct DriftCosts {
   std::size_t bytes_per_particle = 0;
 };
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -30,7 +30,7 @@
 #include <tuple>
 #include <utility>
 
-namespace keeler {
+namespace keeler::collision {
 namespace {
 
 template<class Row> std::vector<Row> rows_of(const std::vector<std::byte>& bytes) {
@@ -50,7 +50,7 @@ template<class Row> std::vector<std::byte> packed(const std::vector<Row>& rows) 
 class DistributedStep {
 public:
   DistributedStep(const StepContext& step, StepHistory& history, BroadPhase& broad_phase, StepOutcome& outcome,
-                  DriftCosts& costs, const GhostLayer& ghosts, const Communicator& ranks)
+                  DriftCosts& costs, const decomposition::GhostLayer& ghosts, const Communicator& ranks)
       : step_(step), history_(history), broad_phase_(broad_phase), outcome_(outcome), costs_(costs), ghosts_(ghosts),
         ranks_(ranks), journal_(step, history, ghosts) {}
 
@@ -75,12 +75,12 @@ public:
 
   /// Exchanges reports of all ghosts' paths. Returns true if anything is new to one of the ranks.
   bool exchange_reports() {
-    Parcels reports(ranks_.size());
+    comm::Parcels reports(ranks_.size());
     for (std::size_t rank = 0; rank < ranks_.size(); ++rank)
       reports[rank] = packed(reports_of(ghosts_.sent[rank]));
     const bool is_new = ranks_.any(reports != sent_);
     sent_ = reports;
-    const Parcels from = ranks_.exchange(std::move(reports));
+    const comm::Parcels from = ranks_.exchange(std::move(reports));
     received_.clear();
     for (std::size_t rank = 0; rank < ranks_.size(); ++rank)
       for (PathReport report : rows_of<PathReport>(from[rank])) {
@@ -189,10 +189,10 @@ private:
   BroadPhase& broad_phase_;
   StepOutcome& outcome_;
   DriftCosts& costs_;
-  const GhostLayer& ghosts_;
+  const decomposition::GhostLayer& ghosts_;
   const Communicator& ranks_;
   PathJournal journal_;
-  Parcels sent_;                     // reports, to each rank
+  comm::Parcels sent_;               // reports, to each rank
   std::vector<PathReport> received_; // of the ghosts, in their order
   CollisionTally tally_;             // of the last attempt
   std::exception_ptr failure_;       // in it
@@ -200,8 +200,9 @@ private:
 
 } // namespace
 
-bool DriftEngine::collide_distributed(Particles& particles, const GhostLayer& ghosts, const Communicator& ranks,
-                                      const ShearingBox& box, double offset, CollisionTally& tally) {
+bool DriftEngine::collide_distributed(Particles& particles, const decomposition::GhostLayer& ghosts,
+                                      const Communicator& ranks, const ShearingBox& box, double offset,
+                                      CollisionTally& tally) {
   assert(finder().exact() && !(observer_ && observer_->wants_events()) && !audit_);
   assert(ghosts.own <= particles.size() && ghosts.own + ghosts.near.size() == particles.size());
   const StepContext step = context_of(particles, box, offset);
@@ -234,4 +235,4 @@ bool DriftEngine::collide_distributed(Particles& particles, const GhostLayer& gh
   return done;
 }
 
-} // namespace keeler
+} // namespace keeler::collision

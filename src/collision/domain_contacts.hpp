@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 class DomainContacts {
 public:
@@ -70,4 +70,4 @@ private:
   std::vector<std::uint8_t> is_rolled_back_;
 };
 
-} // namespace keeler
+} // namespace keeler::collision

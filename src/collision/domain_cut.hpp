@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 /// Positions across the box are fractions of it, in units of 2⁻³².
 class DomainCut {
@@ -62,4 +62,4 @@ private:
   std::vector<std::uint32_t> edges_; // of half strips
 };
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -3,7 +3,7 @@
 
 #include "drift_engine.hpp"
 
-namespace keeler {
+namespace keeler::collision {
 
 void CollisionTally::list_fields(FieldTable& table) {
   table.scalar("collisions_fast", fast, "1", "collisions faster than v_cut");
@@ -36,12 +36,13 @@ void DriftPhase::collide(Particles& particles, const ShearingBox& box, double of
   engine_->collide(particles, box, offset, tally, undisturbed);
 }
 
-bool DriftPhase::collide_distributed(Particles& particles, const GhostLayer& ghosts, const Communicator& ranks,
-                                     const ShearingBox& box, double offset, CollisionTally& tally) {
+bool DriftPhase::collide_distributed(Particles& particles, const decomposition::GhostLayer& ghosts,
+                                     const Communicator& ranks, const ShearingBox& box, double offset,
+                                     CollisionTally& tally) {
   return engine_->collide_distributed(particles, ghosts, ranks, box, offset, tally);
 }
 
-const Finder& DriftPhase::finder() const {
+const finders::Finder& DriftPhase::finder() const {
   return engine_->finder();
 }
 
@@ -65,4 +66,4 @@ double DriftPhase::reached() const {
   return engine_->reached();
 }
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 namespace {
 
 // Notes the first expected partner of particle i that was not offered.
@@ -29,7 +29,7 @@ void compare(NeighbourAudit& audit, std::uint32_t i, const std::vector<PlainPart
 
 } // namespace
 
-void audit_begin(NeighbourAudit& audit, const StepContext& step, const StraightLineTest& test,
+void audit_begin(NeighbourAudit& audit, const StepContext& step, const finders::StraightLineTest& test,
                  const CandidateBlocks& candidates) {
   const std::size_t count = step.particles.size();
   RandomStream random(++audit.steps, RandomPurpose::sample, 0);
@@ -55,7 +55,7 @@ void audit_begin(NeighbourAudit& audit, const StepContext& step, const StraightL
     compare(audit, drawn[k], expected[k], offered[k], step, false);
 }
 
-void audit_end(NeighbourAudit& audit, const StepContext& step, const StraightLineTest& test,
+void audit_end(NeighbourAudit& audit, const StepContext& step, const finders::StraightLineTest& test,
                const BroadPhase& broad_phase, const StepHistory& history, std::span<const std::uint32_t> dirty) {
   if (broad_phase.tries_all()) // then it is the plain search itself
     return;
@@ -72,4 +72,4 @@ void audit_end(NeighbourAudit& audit, const StepContext& step, const StraightLin
   }
 }
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -19,15 +19,15 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::collision {
 namespace {
 
-std::unique_ptr<Finder> finder_named(const std::string& name) {
+std::unique_ptr<finders::Finder> finder_named(const std::string& name) {
   if (without(Acceleration::newton))
-    return std::make_unique<MotionSearch<BoundedMotion, CertifiedSearch>>();
+    return std::make_unique<finders::MotionSearch<finders::BoundedMotion, finders::CertifiedSearch>>();
   if (without(Acceleration::lanes))
-    return make_certified_finder(InstructionSet::portable);
-  return make_finder(name);
+    return finders::make_certified_finder(InstructionSet::portable);
+  return finders::make_finder(name);
 }
 
 constexpr std::size_t searches_together = 64;
@@ -42,8 +42,8 @@ struct FirstContacts {
 // Asks the finder about some candidates at once.
 void search_some(const StepContext& step, std::span<const Candidate> candidates, FirstContacts& found) {
   assert(candidates.size() <= searches_together);
-  std::array<Query, searches_together> queries;
-  std::array<FinderResult, searches_together> results;
+  std::array<finders::Query, searches_together> queries;
+  std::array<finders::FinderResult, searches_together> results;
   const std::size_t count = candidates.size();
   for (std::size_t k = 0; k < count; ++k) {
     const Candidate& c = candidates[k];
@@ -54,13 +54,13 @@ void search_some(const StepContext& step, std::span<const Candidate> candidates,
   const std::vector<std::uint64_t>& ids = step.particles.ids;
   for (std::size_t k = 0; k < count; ++k) {
     const Candidate& c = candidates[k];
-    const FinderResult& result = results[k];
+    const finders::FinderResult& result = results[k];
     if (step.watcher)
       step.watcher->searched(queries[k], result);
     if (result.contact())
       found.events.push_back({result.time, ids[c.low], ids[c.high], c.image, c.low, c.high, 0, 0});
-    found.gave_up += result.exit == FinderExit::gave_up;
-    found.has_not_a_number |= result.exit == FinderExit::not_a_number;
+    found.gave_up += result.exit == finders::FinderExit::gave_up;
+    found.has_not_a_number |= result.exit == finders::FinderExit::not_a_number;
   }
 }
 
@@ -129,7 +129,7 @@ void DriftEngine::begin_step(const StepContext& step, bool undisturbed) {
     history_.begin_step(step.particles.size(), step.begin);
     const bool exactly = step.watcher || !step.finder.exact();
     broad_phase_.begin(step.particles, step.box, step.offset, undisturbed, every_candidate, exactly);
-    finder_step_ = DriftStep(frequencies_, step.begin, step.end(), step.box.size_x + step.box.size_y);
+    finder_step_ = finders::DriftStep(frequencies_, step.begin, step.end(), step.box.size_x + step.box.size_y);
     finder_step_.bodies = step.particles.bodies;
     finder_step_.tested = !every_candidate && !without(Acceleration::rejection);
     step.finder.begin(finder_step_);
@@ -251,4 +251,4 @@ std::size_t DriftEngine::bytes(const StepContext& step) const {
   return total;
 }
 
-} // namespace keeler
+} // namespace keeler::collision

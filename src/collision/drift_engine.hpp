@@ -20,7 +20,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 /// As DriftPhase, which forwards its calls. Never moved: the finder has a pointer to the step.
 class DriftEngine {
@@ -30,12 +30,12 @@ public:
   DriftEngine& operator=(const DriftEngine&) = delete;
 
   void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally, bool undisturbed);
-  bool collide_distributed(Particles& particles, const GhostLayer& ghosts, const Communicator& ranks,
+  bool collide_distributed(Particles& particles, const decomposition::GhostLayer& ghosts, const Communicator& ranks,
                            const ShearingBox& box, double offset, CollisionTally& tally);
   DriftCosts costs() const;
 
-  Finder& finder() const {
-    Finder* const replacement = observer_ ? observer_->replacement_finder() : nullptr;
+  finders::Finder& finder() const {
+    finders::Finder* const replacement = observer_ ? observer_->replacement_finder() : nullptr;
     return replacement ? *replacement : *finder_;
   }
   void release() { broad_phase_.lists().release(); }
@@ -66,7 +66,7 @@ private:
   Frequencies frequencies_;
   double orbital_frequency_;
   Schedule schedule_;
-  std::unique_ptr<Finder> finder_;
+  std::unique_ptr<finders::Finder> finder_;
   DriftObserver* observer_ = nullptr;
   NeighbourAudit* audit_ = nullptr;
   DriftCosts costs_;
@@ -74,7 +74,7 @@ private:
   // from step to step
   BroadPhase broad_phase_;
   OptimisticLoop optimistic_;
-  DriftStep finder_step_; // of the present step; the finder points to it
+  finders::DriftStep finder_step_; // of the present step; the finder points to it
 
   // of the last step, in memory that the next one reuses
   StepHistory history_;
@@ -92,4 +92,4 @@ void DriftEngine::carry_out_in_sequence(const StepContext& step, std::span<const
   costs_.widest_list = std::max(costs_.widest_list, loop.max_partners());
 }
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace keeler {
+namespace keeler::collision {
 
 void EventQueue::assign(std::span<const Event> events) {
   assert(events.size() < ~std::uint32_t{0});
@@ -49,4 +49,4 @@ Event EventQueue::take_first() {
   return events_[first];
 }
 
-} // namespace keeler
+} // namespace keeler::collision

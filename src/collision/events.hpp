@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 /// A predicted contact, or, if both particles are one, its re-prediction. Valid while neither particle has changed its
 /// velocity since: while both event counts (velocity changes in the step) are as at the prediction.
@@ -65,4 +65,4 @@ private:
   std::vector<std::uint32_t> free_; // indices of later events that were taken
 };
 
-} // namespace keeler
+} // namespace keeler::collision

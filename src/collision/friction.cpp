@@ -6,7 +6,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::collision {
 namespace {
 
 constexpr double rolling = 2.0 / 7.0; // tangential effective mass over the reduced mass: 1/(1 + 5/2)
@@ -33,4 +33,4 @@ Vec3 spin_change(const Body& body, const Vec3& normal, const Vec3& impulse) {
   return (-1.0 / (inertia * body.mass * body.radius)) * normal.cross(impulse);
 }
 
-} // namespace keeler
+} // namespace keeler::collision

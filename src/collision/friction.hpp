@@ -5,7 +5,7 @@
 #include <keeler/collision/settings.hpp>
 #include <keeler/particles/store.hpp>
 
-namespace keeler {
+namespace keeler::collision {
 
 /// Two spheres in contact, at one instant in Hill's frame. Spins are angular velocities in the inertial frame, rad⁻¹.
 struct Touch {
@@ -31,4 +31,4 @@ Sliding slide(const Friction& friction, const Touch& touch, double normal_impuls
 /// −r/I n × impulse.
 Vec3 spin_change(const Body& body, const Vec3& normal, const Vec3& impulse);
 
-} // namespace keeler
+} // namespace keeler::collision

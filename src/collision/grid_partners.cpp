@@ -11,7 +11,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::collision {
 
 void GridPartners::begin(const Particles& particles, const ShearingBox& box, double offset, bool every_candidate) {
   assert(box.size_x > 0.0 && box.size_y > 0.0);
@@ -54,4 +54,4 @@ void GridPartners::changed(std::size_t i) {
   require_few_images();
 }
 
-} // namespace keeler
+} // namespace keeler::collision

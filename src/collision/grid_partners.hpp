@@ -15,7 +15,7 @@
 #include <cassert>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 class GridPartners {
 public:
@@ -54,10 +54,10 @@ private:
   const Particles* particles_ = nullptr; // of the present step
   ShearingBox box_;
   double offset_ = 0.0;
-  PeriodicGrid grid_;
+  cells::PeriodicGrid grid_;
   std::vector<Vec3> positions_;                                        // that the grid has binned
   double max_radius_ = 0.0, max_eccentricity_ = 0.0, max_stray_ = 0.0; // m
-  StraightLineTest test_;
+  finders::StraightLineTest test_;
 };
 
 template<class Visit> void GridPartners::visit_near(std::size_t i, double start, const Visit& visit) const {
@@ -92,4 +92,4 @@ template<class Visit> void GridPartners::visit_block(std::size_t block, const Vi
     });
 }
 
-} // namespace keeler
+} // namespace keeler::collision

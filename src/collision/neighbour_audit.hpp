@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace keeler {
+namespace keeler::collision {
 
 /// A pair that may touch, by straight lines in double precision, but was not offered.
 struct MissedNeighbour {
@@ -26,4 +26,4 @@ struct NeighbourAudit {
   std::optional<MissedNeighbour> missed; ///< the first one
 };
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 /// The path of a particle from a time on, to be searched against the paths that ended later.
 struct NewPath {
@@ -85,4 +85,4 @@ private:
   std::uint64_t margin_; // farthest that lists reach across
 };
 
-} // namespace keeler
+} // namespace keeler::collision

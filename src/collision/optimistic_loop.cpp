@@ -8,7 +8,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::collision {
 
 void OptimisticDomain::clear() {
   assigned.clear();
@@ -195,4 +195,4 @@ std::size_t OptimisticLoop::bytes() const {
   return total;
 }
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -32,7 +32,7 @@
 #include <utility>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 class OptimisticLoop {
 public:
@@ -101,4 +101,4 @@ void OptimisticLoop::visit_changes(const StepHistory& history, std::uint32_t par
     visit(log[number].time, log[number].ended, log.spin_before(number));
 }
 
-} // namespace keeler
+} // namespace keeler::collision

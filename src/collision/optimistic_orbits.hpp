@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 class DomainOrbits {
 public:
@@ -95,7 +95,7 @@ public:
   template<class Visit> void visit_partners(std::size_t i, double from, double until, const Visit& visit) {
     lists_.visit_partners(i, from, until, buffer_, visit);
   }
-  void find_all(std::span<const Query> queries, std::span<FinderResult> results) const {
+  void find_all(std::span<const finders::Query> queries, std::span<finders::FinderResult> results) const {
     step_.finder.find_all(queries, results);
   }
   void prefetch_partner(std::size_t i) const { history_.prefetch(i); }
@@ -142,4 +142,4 @@ private:
   bool has_left_skin_ = false;        // one of the two particles changed last
 };
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 /// The locks of all particles.
 class ParticleLocks {
@@ -84,4 +84,4 @@ private:
   std::size_t next_ = 0;
 };
 
-} // namespace keeler
+} // namespace keeler::collision

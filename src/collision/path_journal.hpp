@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 /// The end of a particle's path and the begin of the next one. Spins of smooth particles are zero.
 struct PathChange {
@@ -28,7 +28,7 @@ struct PathChange {
 /// have; and whether an own particle has gone beyond the margin.
 class PathJournal {
 public:
-  PathJournal(const StepContext& step, const StepHistory& history, const GhostLayer& ghosts)
+  PathJournal(const StepContext& step, const StepHistory& history, const decomposition::GhostLayer& ghosts)
       : step_(step), history_(history), ghosts_(ghosts) {}
 
   /// Precondition: the change has not happened yet.
@@ -108,10 +108,10 @@ private:
 
   const StepContext& step_;
   const StepHistory& history_;
-  const GhostLayer& ghosts_;
+  const decomposition::GhostLayer& ghosts_;
   std::vector<Beginning> beginnings_; // one per particle that was hit
   std::vector<PathChange> changes_;
   bool has_strayed_ = false;
 };
 
-} // namespace keeler
+} // namespace keeler::collision

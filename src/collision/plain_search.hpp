@@ -11,7 +11,7 @@
 #include <cmath>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 struct PlainPartner {
   std::uint32_t index = 0; ///< in the store
@@ -32,7 +32,7 @@ inline bool too_far_out(const Body& body, const Body& other, double allowance, d
 /// which particle k got its present orbit; `offset` is the shear offset at the epoch.
 template<class Start>
 std::vector<PlainPartner> plain_search(const Particles& particles, const ShearingBox& box, double offset,
-                                       const StraightLineTest& test, std::uint32_t i, const Start& start) {
+                                       const finders::StraightLineTest& test, std::uint32_t i, const Start& start) {
   assert(i < particles.size() && box.size_x > 0.0 && box.size_y > 0.0);
   std::vector<PlainPartner> partners;
   const Frequencies& f = test.frequencies;
@@ -65,4 +65,4 @@ std::vector<PlainPartner> plain_search(const Particles& particles, const Shearin
   return partners;
 }
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace keeler {
+namespace keeler::collision {
 
 inline constexpr double max_boxes_per_step = 300.0;
 
@@ -25,4 +25,4 @@ inline void require_reach(double reach_x, double reach_y, const ShearingBox& box
                                      boxes, max_boxes_per_step));
 }
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 /// What an owner reports of a path: the ghost (numbered among all ghosts of a rank), when it changed, and to what.
 struct PathReport {
@@ -108,4 +108,4 @@ private:
   std::vector<Path> paths_; // of each ghost
 };
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -11,7 +11,7 @@
 #include <map>
 #include <mutex>
 
-namespace keeler {
+namespace keeler::collision {
 namespace {
 
 constexpr double centimetre = 0.01;
@@ -202,4 +202,4 @@ Rebound rebound(const CollisionSettings& settings, double approach_speed, double
   return {std::max(kept * approach_speed, 1e-3 * cut), fast};
 }
 
-} // namespace keeler
+} // namespace keeler::collision

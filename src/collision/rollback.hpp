@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 /// Gives a particle the path back that this change ended. If it is then outside its skin, its list must be rebuilt:
 /// only the last round may do so, and only where it has rebuilt the list before.
@@ -119,9 +119,9 @@ private:
     other.elements = past.ended;
     const Image image = lists_.nearest_image(one, other);
     const Vec3 shift = step_.box.displacement(ordered ? image : -image, step_.offset);
-    const Query query{ordered ? i : j, ordered ? j : i, shift.x(), shift.y(), std::max(path.from, past.begin)};
-    const FinderResult result = step_.finder.find_between(query, ordered ? one : other, ordered ? other : one);
-    return (result.contact() && result.time <= past.time) || result.exit == FinderExit::not_a_number;
+    const finders::Query query{ordered ? i : j, ordered ? j : i, shift.x(), shift.y(), std::max(path.from, past.begin)};
+    const finders::FinderResult result = step_.finder.find_between(query, ordered ? one : other, ordered ? other : one);
+    return (result.contact() && result.time <= past.time) || result.exit == finders::FinderExit::not_a_number;
   }
 
   const StepContext& step_;
@@ -135,4 +135,4 @@ private:
   std::vector<ChangeNumber> to_undo_;
 };
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 class SequentialOrbits {
 public:
@@ -63,12 +63,12 @@ public:
       visit(c.high, c.image);
   }
 
-  void find_all(std::span<const Query> queries, std::span<FinderResult> results) const {
+  void find_all(std::span<const finders::Query> queries, std::span<finders::FinderResult> results) const {
     step_.finder.find_all(queries, results);
     for (std::size_t k = 0; k < queries.size(); ++k) {
       if (step_.watcher)
         step_.watcher->searched(queries[k], results[k]);
-      counter_.outcome.gave_up += results[k].exit == FinderExit::gave_up;
+      counter_.outcome.gave_up += results[k].exit == finders::FinderExit::gave_up;
     }
   }
 
@@ -90,4 +90,4 @@ private:
   bool is_counted_ = true;            // the last contact
 };
 
-} // namespace keeler
+} // namespace keeler::collision

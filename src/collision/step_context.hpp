@@ -8,12 +8,12 @@
 #include <keeler/hill/shearing_box.hpp>
 #include <keeler/particles/store.hpp>
 
-namespace keeler {
+namespace keeler::collision {
 
 struct StepContext {
   Particles& particles;
   const CollisionSettings& settings;
-  Finder& finder; ///< begins the step before the first search
+  finders::Finder& finder; ///< begins the step before the first search
   Frequencies frequencies;
   double orbital_frequency; ///< rad/s
   ShearingBox box;
@@ -30,4 +30,4 @@ struct StepContext {
   bool recorded() const { return watcher || record_taker; }
 };
 
-} // namespace keeler
+} // namespace keeler::collision

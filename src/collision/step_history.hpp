@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 class StepHistory {
 public:
@@ -56,4 +56,4 @@ private:
   std::vector<Entry> entries_;
 };
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 struct StepOutcome {
   std::vector<std::uint32_t> dirty;     ///< particles that were hit; more than once after rollbacks
@@ -67,4 +67,4 @@ struct ContactCounter {
   }
 };
 
-} // namespace keeler
+} // namespace keeler::collision

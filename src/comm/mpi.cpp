@@ -19,7 +19,7 @@
 
 #include <mpi.h>
 
-namespace keeler {
+namespace keeler::comm {
 namespace {
 
 constexpr std::size_t max_message = std::size_t{1} << 30; // bytes: MPI counts in int
@@ -294,4 +294,4 @@ void Communicator::on_root(const std::function<void()>& work) const {
   });
 }
 
-} // namespace keeler
+} // namespace keeler::comm

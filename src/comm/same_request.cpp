@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-namespace keeler {
+namespace keeler::comm {
 namespace {
 
 using Values = std::map<std::string, std::string>;
@@ -78,4 +78,4 @@ void require_same_request(const std::vector<RequestEntry>& request, const Commun
   });
 }
 
-} // namespace keeler
+} // namespace keeler::comm

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::comm {
 
 /// One entry of a request: an option of the command line, or a key of a scene.
 struct RequestEntry {
@@ -18,4 +18,4 @@ struct RequestEntry {
 /// difference. Collective. Precondition: each name occurs once.
 void require_same_request(const std::vector<RequestEntry>& request, const Communicator& ranks);
 
-} // namespace keeler
+} // namespace keeler::comm

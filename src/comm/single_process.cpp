@@ -7,7 +7,7 @@
 #include <cstring>
 #include <string>
 
-namespace keeler {
+namespace keeler::comm {
 namespace {
 
 // True if the environment of an MPI launcher says that it has started several processes.
@@ -68,4 +68,4 @@ bool another_rank_reports() {
   return false;
 }
 
-} // namespace keeler
+} // namespace keeler::comm

@@ -10,7 +10,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::config {
 namespace {
 
 std::string meaning_of(const Key& key) {
@@ -202,4 +202,4 @@ void check_document(const TomlDocument& document, const std::string& name) {
   check_complete(document, name);
 }
 
-} // namespace keeler
+} // namespace keeler::config

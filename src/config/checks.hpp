@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace keeler {
+namespace keeler::config {
 
 /// Throws UsageError for the first fault: unknown names, wrong types and values out of range, then contradictions, then
 /// missing keys. Messages call the file `name`.
@@ -15,4 +15,4 @@ void check_document(const TomlDocument& document, const std::string& name);
 /// schema has the path.
 bool condition_holds(const TomlDocument& document, const std::string& path);
 
-} // namespace keeler
+} // namespace keeler::config

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <tuple>
 
-namespace keeler {
+namespace keeler::config {
 namespace {
 
 struct Positioned {
@@ -156,11 +156,11 @@ private:
 };
 
 toml::table parsed(const std::string& text, const std::string& name) {
-  require_bounded_toml(text, name);
+  files::require_bounded_toml(text, name);
   try {
     return toml::parse(text, name);
   } catch (const toml::parse_error& error) {
-    fail_at(location_of(name, error.source().begin), toml_fault(error.description()));
+    fail_at(location_of(name, error.source().begin), files::toml_fault(error.description()));
   }
 }
 
@@ -227,7 +227,7 @@ std::vector<DocumentEntry> parse_override_value(const std::string& text, const s
   const std::vector<DocumentEntry> word = {
       {path, key_location, value_location, value_of_word(text, path, schema), true}};
   const std::string line = "value = " + text;
-  if (const std::optional<TomlExcess> excess = toml_excess(line)) {
+  if (const std::optional<files::TomlExcess> excess = files::toml_excess(line)) {
     const std::size_t begin = text.find_first_not_of(" \t");
     if (begin != text.npos && (text[begin] == '[' || text[begin] == '{'))
       fail_at(value_location, excess->what);
@@ -301,4 +301,4 @@ std::string to_toml(const DocumentValue& value) {
   return std::visit(Text{}, value);
 }
 
-} // namespace keeler
+} // namespace keeler::config

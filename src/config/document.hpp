@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-namespace keeler {
+namespace keeler::config {
 
 struct TomlTable {};
 
@@ -94,4 +94,4 @@ std::string kind_words(const DocumentValue& value);
 /// Returns the value as TOML on one line; tables and unusable values in words.
 std::string to_toml(const DocumentValue& value);
 
-} // namespace keeler
+} // namespace keeler::config

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace keeler {
+namespace keeler::config {
 namespace {
 
 bool is_within(const std::string& path, const std::string& table) {
@@ -59,10 +59,10 @@ void drop_contradictions(TomlDocument& document, const DocumentEntry& by, std::v
 }
 
 void add_parent_tables(TomlDocument& document, const std::string& path, const std::string& location) {
-  if (static_cast<std::size_t>(std::count(path.begin(), path.end(), '.')) >= max_toml_depth)
+  if (static_cast<std::size_t>(std::count(path.begin(), path.end(), '.')) >= files::max_toml_depth)
     fail_at(location, fmt::format("unknown key (it has more than {} parts); "
                                   "\"keeler check --defaults\" lists every key",
-                                  max_toml_depth));
+                                  files::max_toml_depth));
   for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1))
     if (!find_entry(document, path.substr(0, dot)))
       document.add({path.substr(0, dot), location, location, TomlTable{}, true});
@@ -118,4 +118,4 @@ void apply_overrides(TomlDocument& document, const std::vector<std::string>& ove
     apply_override(document, from_command_line(text), notices);
 }
 
-} // namespace keeler
+} // namespace keeler::config

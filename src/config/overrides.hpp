@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::config {
 
 /// A key that gets another value than the file gives it.
 struct Override {
@@ -27,4 +27,4 @@ void apply_text(TomlDocument& document, const std::string& path, const std::stri
 void apply_overrides(TomlDocument& document, const std::vector<std::string>& overrides,
                      std::vector<std::string>& notices);
 
-} // namespace keeler
+} // namespace keeler::config

@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-namespace keeler {
+namespace keeler::config {
 namespace {
 
 // Returns the entry with the declared path, nullptr if there is none.
@@ -81,4 +81,4 @@ std::string allowed_words(const Key& key) {
   return {};
 }
 
-} // namespace keeler
+} // namespace keeler::config

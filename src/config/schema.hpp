@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::config {
 
 /// A table of a document.
 struct Section {
@@ -51,4 +51,4 @@ std::string declared_path(const std::string& path);
 /// Returns in words what a value must be: "a number above 0", "one of "direct", "tree"".
 std::string allowed_words(const Key& key);
 
-} // namespace keeler
+} // namespace keeler::config

@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <span>
 
-namespace keeler {
+namespace keeler::config {
 namespace {
 
 // Throws UsageError if a row of a file that a key names does not fit the key.
@@ -33,7 +33,7 @@ void check_row(const Key& key, std::span<const double> row, const std::string& l
 
 NumberRows read_rows(const std::string& path, const Key& key, const std::string& location) {
   NumberRows rows;
-  for_each_row(read_input(path, location), [&](int line, std::span<const double> row) {
+  files::for_each_row(files::read_input(path, location), [&](int line, std::span<const double> row) {
     check_row(key, row, fmt::format("{}:{}:1", path, line));
     rows.emplace_back(row.begin(), row.end());
   });
@@ -205,4 +205,4 @@ std::string Settings::resolved() const {
   return out;
 }
 
-} // namespace keeler
+} // namespace keeler::config

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <string>
 
-namespace keeler {
+namespace keeler::config {
 
 class Settings {
 public:
@@ -82,4 +82,4 @@ auto make_law(const std::vector<Entry>& entries, const std::string& section, Set
   }
 }
 
-} // namespace keeler
+} // namespace keeler::config

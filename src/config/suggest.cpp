@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::config {
 
 std::string suggest_path(const std::string& path, const Schema& schema) {
   const Key asked{.path = declared_path(path)};
@@ -25,4 +25,4 @@ std::string suggest_path(const std::string& path, const Schema& schema) {
   return closest(path, all);
 }
 
-} // namespace keeler
+} // namespace keeler::config

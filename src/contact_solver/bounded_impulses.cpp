@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace keeler {
+namespace keeler::contact_solver {
 namespace {
 
 constexpr std::size_t max_iterations = 100'000;
@@ -194,4 +194,4 @@ bool BoundedImpulses::solve(std::span<const double> required, std::span<const do
   return true;
 }
 
-} // namespace keeler
+} // namespace keeler::contact_solver

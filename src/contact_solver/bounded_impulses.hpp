@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::contact_solver {
 
 /// A joint between two of the bodies; `normal` points from `low` to `high`.
 struct Joint {
@@ -75,4 +75,4 @@ private:
   std::vector<Vec3> changes_;
 };
 
-} // namespace keeler
+} // namespace keeler::contact_solver

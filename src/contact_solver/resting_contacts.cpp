@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace keeler {
+namespace keeler::contact_solver {
 
 void RestingState::list_fields(FieldTable& table) {
   table.rows<std::uint64_t>("resting_pairs", pairs, "1", "ids of pairs that rest on each other");
@@ -20,7 +20,7 @@ RestingContacts::~RestingContacts() = default;
 RestingContacts::RestingContacts(RestingContacts&& other) noexcept = default;
 RestingContacts& RestingContacts::operator=(RestingContacts&& other) noexcept = default;
 
-void RestingContacts::note(const Particles& particles, const SlowPair& pair) {
+void RestingContacts::note(const Particles& particles, const collision::SlowPair& pair) {
   const std::uint64_t low = particles.ids[pair.low], high = particles.ids[pair.high];
   assert(low < high);
   if (pair.kicks < RestingState::slow || (work_ && (work_->rests(low) || work_->rests(high))))
@@ -32,8 +32,8 @@ const RestingCosts& RestingContacts::costs() const {
   return work_ ? work_->costs : none;
 }
 
-void RestingContacts::persist(RestingState& state, const RestingStep& step, const std::optional<Friction>& friction,
-                              CollisionTally& tally) {
+void RestingContacts::persist(RestingState& state, const RestingStep& step,
+                              const std::optional<collision::Friction>& friction, CollisionTally& tally) {
   if (!work_)
     work_ = std::make_unique<Work>();
   Work& w = *work_;
@@ -89,4 +89,4 @@ void RestingContacts::persist_second_half(RestingState& state, const RestingStep
   w.distribute(state, step, w.kicks_after, true, tally);
 }
 
-} // namespace keeler
+} // namespace keeler::contact_solver

@@ -21,7 +21,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::contact_solver {
 
 /// The part that one force has in the kicks at a boundary.
 struct KickPart {
@@ -56,7 +56,7 @@ public:
   RestingContacts& operator=(RestingContacts&& other) noexcept;
 
   /// Records a pair that touched slowly in the current kick interval. Precondition: the pair's low id is the smaller.
-  void note(const Particles& particles, const SlowPair& pair);
+  void note(const Particles& particles, const collision::SlowPair& pair);
 
   /// True if there is nothing to do: no pair rests and none was noted.
   bool idle(const RestingState& state) const { return state.pairs.empty() && noted_.empty(); }
@@ -64,7 +64,7 @@ public:
   /// Selects the pairs at rest, applies friction to rough ones, finds the impulses for the kick, and applies the first
   /// half of them. Precondition: the half kicks that end an interval have been applied. Throws InvariantError if no
   /// impulses exist.
-  void persist(RestingState& state, const RestingStep& step, const std::optional<Friction>& friction,
+  void persist(RestingState& state, const RestingStep& step, const std::optional<collision::Friction>& friction,
                CollisionTally& tally);
 
   /// Applies the second half. Precondition: the half kicks that begin the next interval have been applied.
@@ -86,4 +86,4 @@ private:
   std::unique_ptr<Work> work_; // null while no pair rests
 };
 
-} // namespace keeler
+} // namespace keeler::contact_solver

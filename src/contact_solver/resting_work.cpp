@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace keeler {
+namespace keeler::contact_solver {
 namespace {
 
 constexpr double min_gap_kicks = 0.05; // smallest target gap, in the displacement by a kick of the pair's gravity
@@ -117,10 +117,11 @@ void RestingContacts::Work::update_geometry(const RestingStep& step) {
 }
 
 // Applies friction to the pairs that had an impulse, as in a collision with that normal impulse.
-void RestingContacts::Work::apply_friction(const RestingStep& step, const Friction& friction, CollisionTally& tally) {
+void RestingContacts::Work::apply_friction(const RestingStep& step, const collision::Friction& friction,
+                                           CollisionTally& tally) {
   const Frequencies& f = step.frequencies;
   const Rotation now(f, -step.to_epoch);
-  const SpinTurn turn(-step.to_epoch);
+  const particles::SpinTurn turn(-step.to_epoch);
   for (const PairAtRest& p : pairs) {
     if (!(p.impulse > 0.0))
       continue;
@@ -129,11 +130,11 @@ void RestingContacts::Work::apply_friction(const RestingStep& step, const Fricti
     Vec3 &spin_a = step.particles.spins[low], &spin_b = step.particles.spins[high];
     const Elements relative = step.box.image_of(b.elements - a.elements, p.image, step.epoch_offset);
     const Vec3 velocity = state_at(relative, f, now).velocity;
-    const Sliding sliding =
+    const collision::Sliding sliding =
         slide(friction, {a, b, p.normal, velocity, turn.from_epoch(spin_a), turn.from_epoch(spin_b)}, p.impulse);
     const Vec3 to_low = -sliding.impulse / a.mass, to_high = sliding.impulse / b.mass;
-    spin_a += turn.to_epoch(spin_change(a, p.normal, sliding.impulse));
-    spin_b += turn.to_epoch(spin_change(b, p.normal, sliding.impulse));
+    spin_a += turn.to_epoch(collision::spin_change(a, p.normal, sliding.impulse));
+    spin_b += turn.to_epoch(collision::spin_change(b, p.normal, sliding.impulse));
     tally.energy_lost += sliding.energy_lost;
     tally.momentum_flux += p.separation.x() * sliding.impulse.y();
     tally.azimuthal_gain += azimuthal_gain(a, to_low, f, now);
@@ -220,7 +221,7 @@ void RestingContacts::Work::distribute(RestingState& state, const RestingStep& s
     Body& body = step.particles.bodies[members[m].index];
     const Vec3 dv = 0.5 * velocity_changes[m];
     work += body.mass * dv.dot(peculiar_velocity(body.elements, f, now) + 0.5 * dv - 0.5 * kicks[m]);
-    azimuthal += keeler::azimuthal_gain(body, dv, f, now) - body.mass * dv.y() * kicks[m].y();
+    azimuthal += particles::azimuthal_gain(body, dv, f, now) - body.mass * dv.y() * kicks[m].y();
     for (const KickPart& part : step.kicks) {
       const Vec3 dv_force = (after ? part.after : part.before) * part.accelerations[members[m].index];
       *part.work += 0.5 * body.mass * dv.dot(dv_force);
@@ -248,4 +249,4 @@ void RestingContacts::Work::drop_free_members() {
   pairs.clear();
 }
 
-} // namespace keeler
+} // namespace keeler::contact_solver

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace keeler {
+namespace keeler::contact_solver {
 
 /// A particle that may rest.
 struct Member {
@@ -51,7 +51,7 @@ struct RestingContacts::Work {
   void read_kicks(const RestingStep& step);
   void list_pairs(const RestingState& state, std::vector<Noted>& noted);
   void update_geometry(const RestingStep& step);
-  void apply_friction(const RestingStep& step, const Friction& friction, CollisionTally& tally);
+  void apply_friction(const RestingStep& step, const collision::Friction& friction, CollisionTally& tally);
   void classify_pairs(const RestingStep& step);
   void solve(const RestingStep& step);
   void distribute(RestingState& state, const RestingStep& step, const std::vector<Vec3>& kicks, bool after,
@@ -82,9 +82,9 @@ struct RestingContacts::Work {
   double gap_at_next_kick(const PairAtRest& p, const RestingStep& step, const Rotation& now,
                           const Rotation& then) const {
     Elements relative = p.relative;
-    keeler::kick(relative, velocity_changes[p.high] - velocity_changes[p.low], step.frequencies, now);
+    hill::kick(relative, velocity_changes[p.high] - velocity_changes[p.low], step.frequencies, now);
     return state_at(relative, step.frequencies, then).position.norm() - p.radius_sum;
   }
 };
 
-} // namespace keeler
+} // namespace keeler::contact_solver

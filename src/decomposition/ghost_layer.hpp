@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace keeler {
+namespace keeler::decomposition {
 
 struct GhostLayer {
   std::size_t own = 0;                          ///< number of own particles
@@ -53,4 +53,4 @@ struct GhostLayer {
   static double x_at_epoch(const Elements& el) { return el.guiding_x - el.e_cos; }
 };
 
-} // namespace keeler
+} // namespace keeler::decomposition

@@ -11,7 +11,7 @@
 #include <limits>
 #include <utility>
 
-namespace keeler {
+namespace keeler::decomposition {
 namespace {
 
 constexpr double max_imbalance = 1.05; // particles of the fullest rank over the mean; beyond it bounds move
@@ -147,14 +147,14 @@ void Slabs::rebuild(SlabHolding holding, double offset, double step) {
   const std::vector<double> x = folded_x(particles, box_.size_x);
   balance(x);
   migrate(holding, x);
-  const std::vector<std::uint32_t> order = order_by_position(particles, box_, offset);
-  reorder(particles.bodies, order);
-  reorder(particles.ids, order);
+  const std::vector<std::uint32_t> order = cells::order_by_position(particles, box_, offset);
+  cells::reorder(particles.bodies, order);
+  cells::reorder(particles.ids, order);
   if (particles.rough)
-    reorder(particles.spins, order);
+    cells::reorder(particles.spins, order);
   for (std::vector<Vec3>* rows : holding.rows)
     if (!rows->empty())
-      reorder(*rows, order);
+      cells::reorder(*rows, order);
   ghosts_.references = folded_x(particles, box_.size_x);
   choose_ghosts(particles, step);
   is_built_ = true;
@@ -286,4 +286,4 @@ void Slabs::remove_ghosts(Particles& particles) const {
     particles.spins.resize(ghosts_.own);
 }
 
-} // namespace keeler
+} // namespace keeler::decomposition

@@ -13,7 +13,7 @@
 #include <functional>
 #include <vector>
 
-namespace keeler {
+namespace keeler::decomposition {
 
 /// What a rank stores of its own particles: the store, and further rows in its order (empty on all ranks, or one row
 /// per particle).
@@ -85,4 +85,4 @@ private:
   std::uint64_t rebuilds_ = 0;
 };
 
-} // namespace keeler
+} // namespace keeler::decomposition

@@ -17,7 +17,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::diagnostics {
 namespace {
 
 // Adds the values of one snapshot with this weight.
@@ -48,8 +48,8 @@ void add(LocalAnalysis& sum, const Patch& patch, double weight) {
   sum.radius_m += weight * radius;
   for (int axis = 0; axis < 3; ++axis)
     sum.dispersion_m_s[static_cast<std::size_t>(axis)] += weight * si[axis];
-  sum.toomre_q += weight * toomre_q(newton_g(patch.orbital_frequency), surface_density(patch), patch.frequencies.kappa,
-                                    motion.dispersion.x());
+  sum.toomre_q += weight * hill::toomre_q(newton_g(patch.orbital_frequency), surface_density(patch),
+                                          patch.frequencies.kappa, motion.dispersion.x());
   sum.fraction += weight * motion.fraction;
   sum.crowding_radius_m += weight * crowding_radius(patch);
   sum.optical_depth += weight * crowd.optical_depth;
@@ -72,8 +72,8 @@ void add(std::optional<WaveAnalysis>& sum, const Patch& patch, double weight) {
     sum->dispersion_r_omega[static_cast<std::size_t>(axis)] += weight * radii[axis];
   }
   sum->energy_fraction += weight * waves->energy;
-  sum->toomre_q +=
-      weight * toomre_q(newton_g(patch.orbital_frequency), surface_density(patch), patch.frequencies.kappa, rest.x());
+  sum->toomre_q += weight * hill::toomre_q(newton_g(patch.orbital_frequency), surface_density(patch),
+                                           patch.frequencies.kappa, rest.x());
 }
 
 void add(std::optional<SpinAnalysis>& sum, const Patch& patch, double weight) {
@@ -143,4 +143,4 @@ Analysis analyze(std::span<const Patch> patches, const AnalysisSettings& setting
   return mean;
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

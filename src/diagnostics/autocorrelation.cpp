@@ -12,7 +12,7 @@
 #include <cmath>
 #include <complex>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 double AutocorrelationMap::at(double dx, double dy) const {
   const double u = std::clamp(dx / spacing_x, -static_cast<double>(reach), static_cast<double>(reach));
@@ -89,4 +89,4 @@ AutocorrelationMap mean_autocorrelation(std::span<const Patch> patches) {
   return sum.map();
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// ξ on a grid of lags: columns Δx = −reach … reach, rows Δy over one period. Symmetric: ξ(−Δ) = ξ(Δ).
 struct AutocorrelationMap {
@@ -61,4 +61,4 @@ private:
 /// Returns ξ averaged over patches (at least one), on a mesh that resolves the larger of λ_cr/32 and the mean distance.
 AutocorrelationMap mean_autocorrelation(std::span<const Patch> patches);
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -11,7 +11,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::diagnostics {
 namespace {
 
 Image operator+(const Image& a, const Image& b) {
@@ -80,7 +80,7 @@ struct Friend {
 // Returns the friends of each particle that are smaller, or equal and later: each pair appears once.
 std::vector<std::vector<Friend>> friends(const Patch& patch, double gap) {
   const std::vector<double>& radii = patch.radii;
-  PeriodicGrid grid;
+  cells::PeriodicGrid grid;
   grid.build(patch.positions, patch.box, patch.offset, 2.0 * mean_radius(patch));
   std::vector<std::vector<Friend>> friends(patch.size());
   parallel_for(patch.size(), [&](std::size_t i) {
@@ -215,4 +215,4 @@ ClusterAnalysis analyze_clusters(std::span<const Patch> patches, double gap) {
   return mean;
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <complex>
 
-namespace keeler {
+namespace keeler::diagnostics {
 namespace {
 
 // Cloud-in-cell weights along one axis: of two neighbouring nodes, with sum 1.
@@ -99,4 +99,4 @@ double shot_power(const Patch& patch) {
   return mass_mean(patch, [&](std::size_t k) { return patch.masses[k]; }) / total_mass(patch);
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

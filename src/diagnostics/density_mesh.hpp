@@ -6,7 +6,7 @@
 
 #include <keeler/particles/patch.hpp>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// Even numbers of columns (x) and rows (y).
 struct MeshSize {
@@ -39,4 +39,4 @@ SelfPairs density_waves(const Patch& patch, MeshTransform& mesh);
 /// Returns Σm²/(Σm)²: the power of a wave of random particles; 1/N for equal masses.
 double shot_power(const Patch& patch);
 
-} // namespace keeler
+} // namespace keeler::diagnostics

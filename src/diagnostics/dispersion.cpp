@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace keeler {
+namespace keeler::diagnostics {
 namespace {
 
 Elements elements_now(const Patch& patch, std::size_t k) {
@@ -49,4 +49,4 @@ double mean_radius(const Patch& patch) {
   return ordered_sum(patch.size(), [&](std::size_t k) { return patch.radii[k]; }) / static_cast<double>(patch.size());
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

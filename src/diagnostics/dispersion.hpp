@@ -4,7 +4,7 @@
 
 #include <keeler/particles/patch.hpp>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// Returns the velocity relative to the shear flow, v + (0, S x, 0), m rad^-1: equal for all images of a particle.
 inline Vec3 peculiar_velocity(const Patch& patch, std::size_t k) {
@@ -36,4 +36,4 @@ inline Vec3 velocity_in_radii(const Patch& patch, const Vec3& velocity) {
   return velocity / mean_radius(patch);
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

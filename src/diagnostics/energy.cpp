@@ -2,7 +2,7 @@
 
 #include <keeler/diagnostics/mean.hpp>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 PatchEnergy patch_energy(const Patch& patch) {
   const Frequencies& f = patch.frequencies;
@@ -18,4 +18,4 @@ PatchEnergy patch_energy(const Patch& patch) {
   return mean;
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

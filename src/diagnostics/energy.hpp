@@ -3,7 +3,7 @@
 
 #include <keeler/particles/patch.hpp>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// Mass-weighted means per unit mass, m² rad^-2.
 struct PatchEnergy {
@@ -13,4 +13,4 @@ struct PatchEnergy {
 
 PatchEnergy patch_energy(const Patch& patch);
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <span>
 
-namespace keeler {
+namespace keeler::diagnostics {
 namespace {
 
 using Complex = std::complex<double>;
@@ -122,12 +122,12 @@ Squares squares_of(const EccentricityField& field, double mass, double kappa, co
     double sine = 0.0, cosine = 1.0;
     Complex e_cos, e_sin;
     for (std::size_t b = 0; b < bins; ++b) {
-      sine_cosine(phase * (static_cast<double>(b) + 0.5 * (1.0 - static_cast<double>(bins))), sine, cosine);
+      hill::sine_cosine(phase * (static_cast<double>(b) + 0.5 * (1.0 - static_cast<double>(bins))), sine, cosine);
       const Complex wave(cosine, -sine);
       e_cos += field.cosine[b] * wave;
       e_sin += field.sine[b] * wave;
     }
-    sine_cosine(0.5 * phase, sine, cosine);
+    hill::sine_cosine(0.5 * phase, sine, cosine);
     const double scale = 2.0 / mass * (0.5 * phase / sine);
     squares.add(scale * kappa * (e_sin * rotation.cos_e + e_cos * rotation.sin_e),
                 scale * 0.5 * kappa * kappa * (e_cos * rotation.cos_e - e_sin * rotation.sin_e));
@@ -173,4 +173,4 @@ std::optional<EpicyclicWaves> epicyclic_waves(const Particles& particles, double
                   frequencies.kappa, 2.0 * std::sqrt(square.value(sums.mass_squares)) / means.mass);
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

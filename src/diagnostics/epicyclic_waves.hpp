@@ -12,7 +12,7 @@
 
 #include <optional>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// Modes 1 … box_long_modes count as box-long.
 inline constexpr int box_long_modes = 4;
@@ -37,4 +37,4 @@ std::optional<EpicyclicWaves> epicyclic_waves(const Particles& particles, double
                                               const Frequencies& frequencies, double after, const ParticleMeans& means,
                                               const Communicator& ranks = {});
 
-} // namespace keeler
+} // namespace keeler::diagnostics

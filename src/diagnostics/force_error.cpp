@@ -12,7 +12,7 @@
 #include <numeric>
 #include <utility>
 
-namespace keeler {
+namespace keeler::diagnostics {
 namespace {
 
 // Draws `count` of the candidates by a partial shuffle (Fisher and Yates).
@@ -26,8 +26,8 @@ void draw(std::vector<std::size_t> candidates, std::size_t count, RandomStream& 
 }
 
 // Returns the distance of a particle from the cell's edges x < 0, x > 0, y < 0, y > 0, m.
-std::array<double, 4> depths(const GravityProblem& problem, double offset, std::size_t k) {
-  const Vec3 p = into_cell(problem.box, offset, problem.positions[k]);
+std::array<double, 4> depths(const gravity::GravityProblem& problem, double offset, std::size_t k) {
+  const Vec3 p = gravity::into_cell(problem.box, offset, problem.positions[k]);
   const double half_x = 0.5 * problem.box.size_x, half_y = 0.5 * problem.box.size_y;
   return {p.x() + half_x, half_x - p.x(), p.y() + half_y, half_y - p.y()};
 }
@@ -51,19 +51,19 @@ double percentile_999(const std::vector<Vec3>& errors, std::size_t count) {
 
 } // namespace
 
-GravityProblem gravity_problem(const Patch& patch) {
+gravity::GravityProblem gravity_problem(const Patch& patch) {
   return {patch.positions, patch.masses, patch.ids, patch.box, patch.offset, newton_g(patch.orbital_frequency)};
 }
 
-ForceSample draw_force_sample(const GravityProblem& problem, std::size_t uniform, std::size_t at_each_edge,
+ForceSample draw_force_sample(const gravity::GravityProblem& problem, std::size_t uniform, std::size_t at_each_edge,
                               double edge_width) {
   assert(problem.ids.size() == problem.positions.size());
   ForceSample sample;
   RandomStream random(1, RandomPurpose::sample, 0);
-  const std::vector<std::uint32_t> order = order_by_id(problem.ids);
+  const std::vector<std::uint32_t> order = particles::order_by_id(problem.ids);
   std::vector<std::size_t> all(order.begin(), order.end());
   std::array<std::vector<std::size_t>, 4> beside;
-  const double offset = folded_offset(problem.box, problem.offset);
+  const double offset = gravity::folded_offset(problem.box, problem.offset);
   for (const std::size_t k : all) {
     const std::array<double, 4> depth = depths(problem, offset, k);
     for (std::size_t edge = 0; edge < 4; ++edge)
@@ -120,4 +120,4 @@ double net_force(std::span<const double> masses, std::span<const Vec3> accelerat
   return sizes > 0.0 ? sum.norm() / sizes : 0.0;
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -11,10 +11,10 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// Returns a solver's input for a patch, which must outlive it.
-GravityProblem gravity_problem(const Patch& patch);
+gravity::GravityProblem gravity_problem(const Patch& patch);
 
 /// The sample: indices into a problem, each group in the order drawn.
 struct ForceSample {
@@ -25,7 +25,7 @@ struct ForceSample {
 
 /// Draws `uniform` of all particles and `at_each_edge` of the particles within `edge_width` (m) of an edge, or all if
 /// there are fewer. Always draws the same ids, in any order of the particles.
-ForceSample draw_force_sample(const GravityProblem& problem, std::size_t uniform, std::size_t at_each_edge,
+ForceSample draw_force_sample(const gravity::GravityProblem& problem, std::size_t uniform, std::size_t at_each_edge,
                               double edge_width);
 
 /// Errors relative to the rms |a| of the uniform sample; 0 if that is empty.
@@ -43,4 +43,4 @@ ForceErrors force_errors(const ForceSample& sample, std::span<const Vec3> exact,
 /// Returns |Σ m a| / Σ m |a|.
 double net_force(std::span<const double> masses, std::span<const Vec3> accelerations);
 
-} // namespace keeler
+} // namespace keeler::diagnostics

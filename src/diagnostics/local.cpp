@@ -10,7 +10,7 @@
 #include <cassert>
 #include <vector>
 
-namespace keeler {
+namespace keeler::diagnostics {
 namespace {
 
 // Sums over a particle and its neighbours; velocities relative to the particle, to avoid cancellation.
@@ -58,8 +58,8 @@ struct CrowdingSums {
   }
 };
 
-PeriodicGrid grid_of(const Patch& patch, double cell_size) {
-  PeriodicGrid grid;
+cells::PeriodicGrid grid_of(const Patch& patch, double cell_size) {
+  cells::PeriodicGrid grid;
   grid.build(patch.positions, patch.box, patch.offset, cell_size);
   return grid;
 }
@@ -94,7 +94,7 @@ double local_radius(const Patch& patch) {
 
 LocalMotion local_motion(const Patch& patch, double radius) {
   assert(radius > 0.0);
-  const PeriodicGrid grid = grid_of(patch, radius);
+  const cells::PeriodicGrid grid = grid_of(patch, radius);
   const auto sums = ordered_total<MotionSums>(patch.size(), [&](MotionSums& total, std::size_t i) {
     const Vec3 &position = patch.positions[i], velocity = peculiar_velocity(patch, i);
     Neighbourhood near(patch.masses[i]);
@@ -122,7 +122,7 @@ double crowding_radius(const Patch& patch) {
 
 Crowding crowding(const Patch& patch, double radius) {
   assert(radius > 0.0);
-  const PeriodicGrid grid = grid_of(patch, radius);
+  const cells::PeriodicGrid grid = grid_of(patch, radius);
   const auto sums = ordered_total<CrowdingSums>(patch.size(), [&](CrowdingSums& total, std::size_t i) {
     const Vec3& position = patch.positions[i];
     double discs = 0.0, cuts = 0.0;
@@ -150,4 +150,4 @@ Crowding crowding(const Patch& patch, double radius) {
   return result;
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -4,7 +4,7 @@
 
 #include <keeler/particles/patch.hpp>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// Returns the radius (m) of the neighbourhood in which motion counts as random: the larger of 3 mean radii and
 /// λ_cr/20.
@@ -37,4 +37,4 @@ inline constexpr double thin_optical_depth = 0.1;
 /// depth.
 Crowding crowding(const Patch& patch, double radius);
 
-} // namespace keeler
+} // namespace keeler::diagnostics

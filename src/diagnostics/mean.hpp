@@ -7,7 +7,7 @@
 
 #include <cassert>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// Returns Σ m, kg.
 inline double total_mass(const Patch& patch) {
@@ -20,4 +20,4 @@ template<class Quantity> double mass_mean(const Patch& patch, const Quantity& qu
   return ordered_sum(patch.size(), [&](std::size_t k) { return patch.masses[k] * quantity(k); }) / total_mass(patch);
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -7,7 +7,7 @@
 #include <memory>
 #include <new>
 
-namespace keeler {
+namespace keeler::diagnostics {
 namespace {
 
 // A plan for one use.
@@ -78,4 +78,4 @@ void MeshTransform::column_backward_y(const std::complex<double>* from, double* 
   std::copy(real_, real_ + rows_, to);
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

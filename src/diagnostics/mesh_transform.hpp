@@ -4,7 +4,7 @@
 
 #include <complex>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 class MeshTransform {
 public:
@@ -33,4 +33,4 @@ private:
   std::complex<double>* spectrum_;
 };
 
-} // namespace keeler
+} // namespace keeler::diagnostics

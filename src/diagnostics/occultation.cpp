@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 FlickerMoments flicker_moments(std::span<const double> transmissions) {
   assert(!transmissions.empty());
@@ -43,7 +43,7 @@ Occultation occultation(std::span<const Patch> patches, const RayLattice& rays, 
     const std::vector<double> transmissions = rays.transmissions(blocked);
     footprints.insert(footprints.end(), transmissions.begin(), transmissions.end());
   }
-  result.transmission = measured(mean, singles);
+  result.transmission = statistics::measured(mean, singles);
   result.ray_error = std::sqrt(error_squares) / count;
   const double sine = std::sin(sight.elevation);
   if (mean > 0.0) {
@@ -67,4 +67,4 @@ std::optional<AzimuthalAsymmetry> azimuthal_asymmetry(std::span<const Occultatio
   return AzimuthalAsymmetry{(max_t - min_t) / (max_t + min_t), brightest->sight.azimuth};
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

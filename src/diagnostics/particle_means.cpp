@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace keeler {
+namespace keeler::diagnostics {
 namespace {
 
 struct PatchSums {
@@ -45,7 +45,7 @@ struct SpinSums {
 SpinMeans spin_means(const Particles& particles, double after, const Communicator& ranks) {
   if (!particles.rough)
     return {};
-  const SpinTurn turn(after);
+  const particles::SpinTurn turn(after);
   SpinSums sums = exact_total<SpinSums>(particles.size(), [&](SpinSums& total, std::size_t k) {
     const Body& body = particles.bodies[k];
     const double inertia = 0.4 * body.mass * body.radius * body.radius;
@@ -126,4 +126,4 @@ ParticleMeans particle_means(const Particles& particles, const Frequencies& freq
           spin_means(particles, after, ranks)};
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -7,7 +7,7 @@
 #include <keeler/hill/elements.hpp>
 #include <keeler/particles/store.hpp>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// Means of the spins of rough particles; all 0 for smooth ones.
 struct SpinMeans {
@@ -33,4 +33,4 @@ struct ParticleMeans {
 ParticleMeans particle_means(const Particles& particles, const Frequencies& frequencies, double after,
                              const Communicator& ranks = {});
 
-} // namespace keeler
+} // namespace keeler::diagnostics

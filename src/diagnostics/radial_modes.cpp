@@ -8,7 +8,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::diagnostics {
 namespace {
 
 struct Sums {
@@ -99,7 +99,7 @@ std::optional<Growth> growth(std::span<const double> times, std::span<const doub
     std::vector<double> about_line;
     for (std::size_t k = 0; k < values.size(); ++k)
       about_line.push_back(std::log(values[k]) - mean_log - result.rate * (times[k] - mean_time));
-    const double independent = statistical_inefficiency(about_line);
+    const double independent = statistics::statistical_inefficiency(about_line);
     result.error = std::sqrt(independent * std::max(0.0, ll - tl * tl / tt) / ((count - 2.0) * tt));
   }
   return result;
@@ -128,4 +128,4 @@ std::vector<RadialModeAnalysis> analyze_radial_modes(std::span<const Patch> patc
   return result;
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

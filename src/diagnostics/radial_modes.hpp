@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// Σ/⟨Σ⟩ − 1 is the real part of density × exp(i k x). The velocities are relative to the shear and the mean motion:
 /// mass-weighted means, to first order in the amplitudes.
@@ -44,4 +44,4 @@ std::optional<Growth> growth(std::span<const double> times, std::span<const doub
 
 std::vector<RadialModeAnalysis> analyze_radial_modes(std::span<const Patch> patches, int count);
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 // Two passes in the order of the particles: means first, so that a common motion does not cancel digits.
 std::vector<RadialBin> radial_profile(const Patch& patch, std::size_t bins) {
@@ -46,4 +46,4 @@ std::vector<RadialBin> radial_profile(const Patch& patch, std::size_t bins) {
   return profile;
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// Particles with centres in the bin, each at its image inside the cell. Motion is weighted by mass and 0 in an empty
 /// bin.
@@ -21,4 +21,4 @@ struct RadialBin {
 /// Returns bins from −L_x/2 to L_x/2. Precondition: at least one bin.
 std::vector<RadialBin> radial_profile(const Patch& patch, std::size_t bins);
 
-} // namespace keeler
+} // namespace keeler::diagnostics

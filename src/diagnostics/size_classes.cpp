@@ -8,7 +8,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::diagnostics {
 namespace {
 
 struct ClassSums {
@@ -70,4 +70,4 @@ std::vector<SizeClass> size_classes(const Patch& patch, int classes) {
   return result;
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 inline constexpr int max_size_classes = 4;
 
@@ -14,4 +14,4 @@ inline constexpr int max_size_classes = 4;
 /// radii are equal. Means are weighted by mass. Precondition: at least one class.
 std::vector<SizeClass> size_classes(const Patch& patch, int classes = max_size_classes);
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -6,7 +6,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 std::optional<SpinState> spin_state(const Patch& patch) {
   if (patch.spins.empty())
@@ -23,4 +23,4 @@ std::optional<SpinState> spin_state(const Patch& patch) {
   return state;
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// Weighted by mass. Spins are relative to the stars, rad⁻¹.
 struct SpinState {
@@ -19,4 +19,4 @@ struct SpinState {
 /// Returns nothing for smooth particles, which have no spins.
 std::optional<SpinState> spin_state(const Patch& patch);
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 double optical_depth(const Patch& patch) {
   const double squares = ordered_sum(patch.size(), [&](std::size_t k) { return patch.radii[k] * patch.radii[k]; });
@@ -33,12 +33,12 @@ double midplane_filling(const Patch& patch) {
 }
 
 double critical_wavelength(const Patch& patch) {
-  return critical_wavelength(newton_g(patch.orbital_frequency), surface_density(patch), patch.frequencies.kappa);
+  return hill::critical_wavelength(newton_g(patch.orbital_frequency), surface_density(patch), patch.frequencies.kappa);
 }
 
 double toomre_q(const Patch& patch) {
-  return toomre_q(newton_g(patch.orbital_frequency), surface_density(patch), patch.frequencies.kappa,
-                  velocity_dispersion(patch).x());
+  return hill::toomre_q(newton_g(patch.orbital_frequency), surface_density(patch), patch.frequencies.kappa,
+                        velocity_dispersion(patch).x());
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

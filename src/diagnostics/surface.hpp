@@ -3,7 +3,7 @@
 
 #include <keeler/particles/patch.hpp>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// Returns τ = Σ π r² / area.
 double optical_depth(const Patch& patch);
@@ -23,4 +23,4 @@ double critical_wavelength(const Patch& patch);
 /// Returns Q (hill/toomre.hpp).
 double toomre_q(const Patch& patch);
 
-} // namespace keeler
+} // namespace keeler::diagnostics

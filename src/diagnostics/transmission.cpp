@@ -13,7 +13,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::diagnostics {
 namespace {
 
 // The shadow of a sphere on the plane z = 0: a Δx² + 2 b Δx Δy + c Δy² < r² about its centre.
@@ -95,9 +95,9 @@ RayLattice::RayLattice(const ShearingBox& box, std::size_t rays, double footprin
 std::vector<std::uint8_t> RayLattice::blocked(const Patch& patch, const LineOfSight& sight) const {
   assert(patch.box.size_x == box_.size_x && patch.box.size_y == box_.size_y);
   assert(std::sin(sight.elevation) > 0.0);
-  const ShearedCells cells{patch.box, patch.offset,
-                           CellAxis(box_.size_x, box_.size_x / static_cast<double>(columns_), columns_),
-                           CellAxis(box_.size_y, box_.size_y / static_cast<double>(rows_), rows_)};
+  const cells::ShearedCells cells{patch.box, patch.offset,
+                                  cells::CellAxis(box_.size_x, box_.size_x / static_cast<double>(columns_), columns_),
+                                  cells::CellAxis(box_.size_y, box_.size_y / static_cast<double>(rows_), rows_)};
   const double margin = 1e-9 * (box_.size_x + box_.size_y); // rounding may put a ray beside its cell
   std::vector<std::atomic<std::uint8_t>> marks(positions_.size());
   const Shadow plane(sight);
@@ -149,4 +149,4 @@ RayMean ray_mean(const std::vector<std::uint8_t>& blocked) {
   return {static_cast<double>(passed) / rays, std::sqrt(static_cast<double>(differences)) / rays};
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

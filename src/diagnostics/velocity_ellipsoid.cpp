@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 VelocityMoments velocity_moments(const Patch& patch) {
   const Vec3 mean = mean_velocity(patch);
@@ -30,4 +30,4 @@ VelocityEllipsoid velocity_ellipsoid(const VelocityMoments& v) {
           0.5 * std::atan2(v.xy, 0.5 * (v.xx - v.yy)) * 180.0 / pi};
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -5,7 +5,7 @@
 #include <keeler/diagnostics/analysis.hpp>
 #include <keeler/particles/patch.hpp>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// Mass-weighted second moments about the mean velocity, m² rad⁻². Moments of several snapshots add up as means.
 struct VelocityMoments {
@@ -17,4 +17,4 @@ VelocityMoments velocity_moments(const Patch& patch);
 /// For isotropic motion in the plane the ratio is 1 and the deviation meaningless.
 VelocityEllipsoid velocity_ellipsoid(const VelocityMoments& moments);
 
-} // namespace keeler
+} // namespace keeler::diagnostics

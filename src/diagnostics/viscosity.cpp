@@ -3,7 +3,7 @@
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/mean.hpp>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 double translational_viscosity(const Patch& patch) {
   const Vec3 mean = mean_velocity(patch);
@@ -14,4 +14,4 @@ double translational_viscosity(const Patch& patch) {
   return flux / patch.box.shear;
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -3,7 +3,7 @@
 
 #include <keeler/particles/patch.hpp>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// Returns the translational viscosity ν_trans = (1/S) ⟨ẋ (ẏ + S x)⟩, without the mean motion, m² rad^-1 (Wisdom &
 /// Tremaine 1988, with S = 3/2). Times Ω it is in m² s^-1.
@@ -16,4 +16,4 @@ constexpr double loss_viscosity(double work, double mass, double shear, double t
   return work / (mass * shear * shear * time);
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -4,7 +4,7 @@
 
 #include <cassert>
 
-namespace keeler {
+namespace keeler::diagnostics {
 namespace {
 
 // Values of the snapshots that have one, to measure their scatter.
@@ -37,12 +37,12 @@ WakeGeometry wake_geometry(std::span<const Patch> patches, double critical_wavel
   WakeGeometry geometry;
   geometry.mean = find_wakes(mean_autocorrelation(patches), critical_wavelength);
   geometry.contrast = waves.contrast;
-  geometry.wavelength = measured(waves.wavelength, wavelengths.values);
-  geometry.radial_wavelength = measured(waves.radial_wavelength, radial_wavelengths.values);
-  geometry.angle_degrees = measured_direction(waves.angle_degrees, angles.values);
-  geometry.inner_pitch_degrees = measured_direction(geometry.mean.inner_pitch_degrees, inner.values);
-  geometry.outer_pitch_degrees = measured_direction(geometry.mean.outer_pitch_degrees, outer.values);
+  geometry.wavelength = statistics::measured(waves.wavelength, wavelengths.values);
+  geometry.radial_wavelength = statistics::measured(waves.radial_wavelength, radial_wavelengths.values);
+  geometry.angle_degrees = statistics::measured_direction(waves.angle_degrees, angles.values);
+  geometry.inner_pitch_degrees = statistics::measured_direction(geometry.mean.inner_pitch_degrees, inner.values);
+  geometry.outer_pitch_degrees = statistics::measured_direction(geometry.mean.outer_pitch_degrees, outer.values);
   return geometry;
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

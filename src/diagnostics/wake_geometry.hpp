@@ -8,9 +8,9 @@
 #include <keeler/particles/patch.hpp>
 #include <keeler/statistics/measured.hpp>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// Precondition: at least one snapshot, all of one box.
 WakeGeometry wake_geometry(std::span<const Patch> patches, double critical_wavelength);
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -8,7 +8,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::diagnostics {
 namespace {
 
 constexpr double min_significance = 5.0;
@@ -104,4 +104,4 @@ WakeWaves wake_waves(const WakePower& sums) {
   return waves;
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -16,7 +16,7 @@
 #include <array>
 #include <optional>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// The density is smoothed by a Gaussian of this standard deviation, in λ_cr: power is weighted by exp(−(k λ_cr/8)²).
 /// This removes clumps and contacts inside a wake, and leaves structures as wide as a wake or wider.
@@ -56,4 +56,4 @@ struct WakeWaves {
 
 WakeWaves wake_waves(const WakePower& sums);
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <span>
 
-namespace keeler {
+namespace keeler::diagnostics {
 namespace {
 
 constexpr double min_amplitude = 0.02; // that of density waves of 20 %: no published wake is weaker
@@ -194,4 +194,4 @@ Wakes find_wakes(const AutocorrelationMap& map, double critical_wavelength) {
   return wakes;
 }
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -16,10 +16,10 @@
 #include <optional>
 #include <vector>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// Lines extend 3/4 λ_cr to each side (less in a small box). Finds no wakes if the map does not resolve λ_cr, or if the
 /// amplitude is below 0.02 or below five times the noise of random particles.
 Wakes find_wakes(const AutocorrelationMap& map, double critical_wavelength);
 
-} // namespace keeler
+} // namespace keeler::diagnostics

@@ -10,7 +10,7 @@
 #include <charconv>
 #include <optional>
 
-namespace keeler {
+namespace keeler::files {
 namespace {
 
 constexpr std::string_view blanks = " \t\r";
@@ -198,4 +198,4 @@ Columns parse_columns(std::string_view text, const std::string& name) {
   return Parser(text, name).run();
 }
 
-} // namespace keeler
+} // namespace keeler::files

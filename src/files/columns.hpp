@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace keeler {
+namespace keeler::files {
 
 struct Columns {
   std::vector<std::string> names;
@@ -20,4 +20,4 @@ struct Columns {
 /// numbers, the names are taken from a comment. Throws UsageError "NAME:LINE: what is wrong; what to do".
 Columns parse_columns(std::string_view text, const std::string& name);
 
-} // namespace keeler
+} // namespace keeler::files

@@ -15,7 +15,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace keeler {
+namespace keeler::files {
 namespace {
 
 constexpr std::size_t always_allowed_bytes = 1000000; // read without checking the free memory
@@ -92,4 +92,4 @@ std::string why_unread() {
   return std::strerror(errno);
 }
 
-} // namespace keeler
+} // namespace keeler::files

@@ -13,7 +13,7 @@
 
 #include <sys/types.h>
 
-namespace keeler {
+namespace keeler::files {
 
 /// A file that is being read.
 class Source {
@@ -73,4 +73,4 @@ std::optional<Bytes> content_of(const std::filesystem::path& path,
   return {};
 }
 
-} // namespace keeler
+} // namespace keeler::files

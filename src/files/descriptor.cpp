@@ -13,7 +13,7 @@
 #include <unistd.h>
 #include <utility>
 
-namespace keeler {
+namespace keeler::files {
 namespace {
 
 [[noreturn]] void fail(const char* verb, const std::filesystem::path& file) {
@@ -151,4 +151,4 @@ void Descriptor::close() {
     fail("close", file_);
 }
 
-} // namespace keeler
+} // namespace keeler::files

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-namespace keeler {
+namespace keeler::files {
 
 /// Owns a file descriptor. Every member throws IoError "cannot VERB 'FILE': reason"; DiskFullError on a full disk.
 class Descriptor {
@@ -47,4 +47,4 @@ private:
   int number_ = -1;
 };
 
-} // namespace keeler
+} // namespace keeler::files

@@ -10,7 +10,7 @@
 
 #include <unistd.h>
 
-namespace keeler {
+namespace keeler::files {
 namespace {
 
 template<class Bytes> Bytes read(const std::filesystem::path& file) {
@@ -62,4 +62,4 @@ std::string read_lines(const std::filesystem::path& file) {
   return text;
 }
 
-} // namespace keeler
+} // namespace keeler::files

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace keeler {
+namespace keeler::files {
 
 /// Returns the folder of a file; "." for a bare name.
 std::filesystem::path folder_of(const std::filesystem::path& file);
@@ -34,4 +34,4 @@ std::string read_text(const std::filesystem::path& file);
 /// Reads a text without the byte order mark and carriage returns that Windows tools add.
 std::string read_lines(const std::filesystem::path& file);
 
-} // namespace keeler
+} // namespace keeler::files

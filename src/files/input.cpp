@@ -14,7 +14,7 @@
 #include <sstream>
 #include <vector>
 
-namespace keeler {
+namespace keeler::files {
 namespace {
 
 double number_of(const std::string& word) {
@@ -66,4 +66,4 @@ void for_each_row(const std::string& text,
   }
 }
 
-} // namespace keeler
+} // namespace keeler::files

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace keeler {
+namespace keeler::files {
 
 /// Removes the UTF-8 byte order mark that some editors and spreadsheets write.
 std::string_view without_byte_order_mark(std::string_view text);
@@ -24,4 +24,4 @@ std::string read_input(const std::filesystem::path& file, const std::string& loc
 /// commas or semicolons, '#' starts a comment, and empty lines are skipped. A word that is not a number becomes NaN.
 void for_each_row(const std::string& text, const std::function<void(int line, std::span<const double> numbers)>& visit);
 
-} // namespace keeler
+} // namespace keeler::files

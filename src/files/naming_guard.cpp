@@ -3,7 +3,7 @@
 #include <cassert>
 #include <utility>
 
-namespace keeler {
+namespace keeler::files {
 namespace {
 
 thread_local const NamingGuard* innermost = nullptr;
@@ -25,4 +25,4 @@ void NamingGuard::run_check() {
     innermost->check_();
 }
 
-} // namespace keeler
+} // namespace keeler::files

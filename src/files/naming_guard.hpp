@@ -3,7 +3,7 @@
 
 #include <functional>
 
-namespace keeler {
+namespace keeler::files {
 
 /// During its lifetime, each NewFile of this thread calls `check` after it is written and before it takes its name. If
 /// `check` throws, no file is left: for instance when the folder was replaced by another meanwhile. Guards nest.
@@ -23,4 +23,4 @@ private:
   const NamingGuard* outer_;
 };
 
-} // namespace keeler
+} // namespace keeler::files

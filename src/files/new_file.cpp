@@ -25,7 +25,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace keeler {
+namespace keeler::files {
 namespace fs = std::filesystem;
 namespace {
 
@@ -216,4 +216,4 @@ void remove_left_overs(const fs::path& folder, const std::function<bool(std::str
   }
 }
 
-} // namespace keeler
+} // namespace keeler::files

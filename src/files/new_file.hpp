@@ -14,7 +14,7 @@
 #include <string>
 #include <string_view>
 
-namespace keeler {
+namespace keeler::files {
 
 /// Returns the descriptor of this process that a name refers to, through any links: 1 for /dev/stdout, 3 for /dev/fd/3.
 std::optional<int> descriptor_named(const std::filesystem::path& name);
@@ -59,4 +59,4 @@ std::optional<std::string_view> unfinished_name(std::string_view name);
 /// name. Precondition: accept is not empty.
 void remove_left_overs(const std::filesystem::path& folder, const std::function<bool(std::string_view name)>& accept);
 
-} // namespace keeler
+} // namespace keeler::files

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace keeler {
+namespace keeler::files {
 namespace {
 
 constexpr std::size_t max_bytes = std::size_t{64} << 20; // parsed, a text takes about 50 times its size
@@ -119,4 +119,4 @@ std::string toml_fault(std::string_view description) {
   return fmt::format("not TOML ({}); correct this line", reason);
 }
 
-} // namespace keeler
+} // namespace keeler::files

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace keeler {
+namespace keeler::files {
 
 /// Limit on the parts of a dotted name, and on nested lists and tables. Keeler's own files have 4 at most.
 inline constexpr std::size_t max_toml_depth = 16;
@@ -29,4 +29,4 @@ void require_bounded_toml(std::string_view text, const std::string& name);
 /// Returns the message for a syntax error that a parser describes by `description`.
 std::string toml_fault(std::string_view description);
 
-} // namespace keeler
+} // namespace keeler::files

@@ -8,7 +8,7 @@
 
 #include <poll.h>
 
-namespace keeler {
+namespace keeler::files {
 
 void require_patience(const std::filesystem::path& file) {
   if (interrupted() || Interruptible::waits_are_over())
@@ -25,4 +25,4 @@ void await(int descriptor, short events, const std::filesystem::path& file) {
   }
 }
 
-} // namespace keeler
+} // namespace keeler::files

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-namespace keeler {
+namespace keeler::files {
 
 inline constexpr int patience_ms = 50; // between two checks for an interrupt
 
@@ -13,4 +13,4 @@ void require_patience(const std::filesystem::path& file);
 /// Waits until the descriptor of `file` is ready for `events`, as poll(2). Throws Interrupted.
 void await(int descriptor, short events, const std::filesystem::path& file);
 
-} // namespace keeler
+} // namespace keeler::files

@@ -6,7 +6,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-namespace keeler {
+namespace keeler::files {
 
 bool is_being_written(const std::filesystem::path& file) {
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
@@ -17,4 +17,4 @@ bool is_being_written(const std::filesystem::path& file) {
   return locked;
 }
 
-} // namespace keeler
+} // namespace keeler::files

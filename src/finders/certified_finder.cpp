@@ -10,7 +10,7 @@
 #include <cassert>
 #include <cstddef>
 
-namespace keeler {
+namespace keeler::finders {
 namespace {
 
 // The kernels read a body as eight numbers, and a query as three.
@@ -149,4 +149,4 @@ std::unique_ptr<Finder> make_certified_finder(InstructionSet set) {
   return std::make_unique<CertifiedFinder>(set);
 }
 
-} // namespace keeler
+} // namespace keeler::finders

@@ -7,10 +7,10 @@
 
 #include <memory>
 
-namespace keeler {
+namespace keeler::finders {
 
 /// Results are bit-identical for all instruction sets. If Newton's method leaves a search undecided, its evaluations
 /// are counted, but only the iterations of CertifiedSearch.
 std::unique_ptr<Finder> make_certified_finder(InstructionSet set);
 
-} // namespace keeler
+} // namespace keeler::finders

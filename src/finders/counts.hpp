@@ -9,7 +9,7 @@
 #include <cassert>
 #include <cstdint>
 
-namespace keeler {
+namespace keeler::finders {
 
 struct FinderCounts {
   static constexpr int bins = 64; ///< 0 … 62; the last one holds 63 and above
@@ -61,4 +61,4 @@ struct FinderCounts {
   }
 };
 
-} // namespace keeler
+} // namespace keeler::finders

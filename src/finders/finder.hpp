@@ -16,7 +16,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::finders {
 
 /// One step as seen by finders. Times are relative to the epoch of the elements, rad. Precondition: begin <= end.
 struct DriftStep {
@@ -214,4 +214,4 @@ private:
   std::vector<typename MemoryOf<Motion>::Type> memories_;
 };
 
-} // namespace keeler
+} // namespace keeler::finders

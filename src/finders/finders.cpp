@@ -9,7 +9,7 @@
 
 #include <cassert>
 
-namespace keeler {
+namespace keeler::finders {
 namespace {
 
 template<MotionModel Motion, SearchMethod<Motion> Search> std::unique_ptr<Finder> make() {
@@ -65,4 +65,4 @@ std::unique_ptr<Finder> make_finder(const std::string& name) {
   return nullptr;
 }
 
-} // namespace keeler
+} // namespace keeler::finders

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-namespace keeler {
+namespace keeler::finders {
 
 struct FinderEntry {
   const char* name;
@@ -21,4 +21,4 @@ std::span<const FinderEntry> finder_table();
 /// Returns the finder of that name, or null.
 std::unique_ptr<Finder> make_finder(const std::string& name);
 
-} // namespace keeler
+} // namespace keeler::finders

@@ -1,6 +1,6 @@
 #include "monotone_newton.hpp"
 
-namespace keeler {
+namespace keeler::finders {
 
 namespace monotone_newton_portable {
 extern const MonotoneNewton kernel;
@@ -24,4 +24,4 @@ MonotoneNewton monotone_newton([[maybe_unused]] InstructionSet set) {
   return monotone_newton_portable::kernel;
 }
 
-} // namespace keeler
+} // namespace keeler::finders

@@ -12,7 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace keeler {
+namespace keeler::finders {
 
 /// A pair: the eight numbers of each body (particles/store.hpp); the shift of `high` in x and y and the start of the
 /// search, contiguous in a query. Pointers, since recently written numbers are slow to read as vectors.
@@ -48,4 +48,4 @@ struct MonotoneNewton {
 
 MonotoneNewton monotone_newton(InstructionSet set);
 
-} // namespace keeler
+} // namespace keeler::finders

@@ -1,11 +1,11 @@
-// Source of the search; see monotone_newton.hpp. The including file sets KEELER_KERNEL_SPACE and defines Reals and Masks
-// of `lanes` lanes (a double and a bool, or vectors), `PairElements load(pairs)`, `square_root`, `any(mask)`, `none()`
-// and `lane(values, k)`. Everything here has internal linkage except `kernel`.
+// Source of the search; see monotone_newton.hpp. The including file sets KEELER_KERNEL_SPACE and defines Reals and
+// Masks of `lanes` lanes (a double and a bool, or vectors), `PairElements load(pairs)`, `square_root`, `any(mask)`,
+// `none()` and `lane(values, k)`. Everything here has internal linkage except `kernel`.
 //
 // Only + − * / and square roots, in this order: the same bits on every instruction set. A comparison with NaN proves
 // nothing, so such pairs stay undecided.
 
-namespace keeler::KEELER_KERNEL_SPACE {
+namespace keeler::finders::KEELER_KERNEL_SPACE {
 namespace {
 
 constexpr double ulp = 2.220446049250313e-16;
@@ -108,8 +108,7 @@ inline Bounds bounds(const PairElements& p, const MonotoneStep& step, const Mome
   const Reals fourth =
       (2.0 * up) * acceleration * (4.0 * fastest * speed + 3.0 * acceleration + (fastest * fastest) * distance);
   b.third = magnitude(third) + fourth * b.span + fastest * b.curvature_error;
-  b.min_curvature =
-      curvature + smaller(third, Reals{}) * b.span - 0.5 * fourth * (b.span * b.span) - b.curvature_error;
+  b.min_curvature = curvature + smaller(third, Reals{}) * b.span - 0.5 * fourth * (b.span * b.span) - b.curvature_error;
   b.rise = up * larger(-b.min_curvature, Reals{});
   return b;
 }
@@ -225,4 +224,4 @@ inline void find(const MonotonePair* pairs, const MonotoneStep& step, MonotoneAn
 extern const MonotoneNewton kernel;
 const MonotoneNewton kernel = {lanes, find};
 
-} // namespace keeler::KEELER_KERNEL_SPACE
+} // namespace keeler::finders::KEELER_KERNEL_SPACE

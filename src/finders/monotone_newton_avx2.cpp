@@ -5,7 +5,7 @@
 
 #define KEELER_KERNEL_SPACE monotone_newton_avx2
 
-namespace keeler::KEELER_KERNEL_SPACE {
+namespace keeler::finders::KEELER_KERNEL_SPACE {
 namespace {
 
 constexpr std::size_t lanes = 4;
@@ -54,6 +54,6 @@ inline double lane(Reals values, std::size_t k) {
 }
 
 } // namespace
-} // namespace keeler::KEELER_KERNEL_SPACE
+} // namespace keeler::finders::KEELER_KERNEL_SPACE
 
 #include "monotone_newton.inl"

@@ -3,7 +3,7 @@
 
 #define KEELER_KERNEL_SPACE monotone_newton_portable
 
-namespace keeler::KEELER_KERNEL_SPACE {
+namespace keeler::finders::KEELER_KERNEL_SPACE {
 namespace {
 
 constexpr std::size_t lanes = 1;
@@ -37,6 +37,6 @@ inline double lane(Reals values, std::size_t) {
 }
 
 } // namespace
-} // namespace keeler::KEELER_KERNEL_SPACE
+} // namespace keeler::finders::KEELER_KERNEL_SPACE
 
 #include "monotone_newton.inl"

@@ -3,7 +3,7 @@
 
 #include <keeler/hill/elements.hpp>
 
-namespace keeler {
+namespace keeler::finders {
 
 /// Two particles within one drift. `lo` has the lower id; the image offset has been added to `hi`. Times are relative
 /// to the epoch of the elements, rad. The span is half-open: a contact at `end` belongs to the next step.
@@ -51,4 +51,4 @@ struct FinderResult {
   bool contact() const { return exit == FinderExit::hit || exit == FinderExit::overlapping; }
 };
 
-} // namespace keeler
+} // namespace keeler::finders

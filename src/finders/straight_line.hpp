@@ -9,7 +9,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::finders {
 
 /// The test at times up to `end` after the epoch, all within `longest` (rad) of it; may_touch_soon() has separate
 /// times.
@@ -65,4 +65,4 @@ private:
   }
 };
 
-} // namespace keeler
+} // namespace keeler::finders

@@ -2,7 +2,7 @@
 
 #include <keeler/core/parallel.hpp>
 
-namespace keeler {
+namespace keeler::forces {
 namespace {
 
 class ConstantAcceleration : public Force {
@@ -41,4 +41,4 @@ ForceEntry constant_acceleration_entry() {
           }};
 }
 
-} // namespace keeler
+} // namespace keeler::forces

@@ -3,9 +3,9 @@
 
 #include <keeler/forces/force.hpp>
 
-namespace keeler {
+namespace keeler::forces {
 
 /// The entry of the scene's table [constant_acceleration].
 ForceEntry constant_acceleration_entry();
 
-} // namespace keeler
+} // namespace keeler::forces

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <string_view>
 
-namespace keeler {
+namespace keeler::forces {
 namespace {
 
 // Names that mean something else in scenes, in the fields of a state (resting_work) or among a run's times.
@@ -38,4 +38,4 @@ const std::vector<ForceEntry>& external_forces() {
   return registered_forces().entries();
 }
 
-} // namespace keeler
+} // namespace keeler::forces

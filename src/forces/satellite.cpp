@@ -24,7 +24,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::forces {
 namespace {
 
 // Internal units; times in rad since the run began.
@@ -208,4 +208,4 @@ ForceEntry satellite_entry() {
       check};
 }
 
-} // namespace keeler
+} // namespace keeler::forces

@@ -6,7 +6,7 @@
 
 #include <optional>
 
-namespace keeler {
+namespace keeler::forces {
 
 /// Returns the entry of the scene's table [satellite].
 ForceEntry satellite_entry();
@@ -30,4 +30,4 @@ std::optional<SatellitePassage> dragging_passage(const Parameters& parameters, d
                                                  const Frequencies& frequencies, double min_drag, double from,
                                                  double until);
 
-} // namespace keeler
+} // namespace keeler::forces

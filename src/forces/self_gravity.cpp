@@ -7,7 +7,7 @@
 #include <cassert>
 #include <map>
 
-namespace keeler {
+namespace keeler::forces {
 namespace {
 
 class SelfGravity : public Force {
@@ -20,7 +20,7 @@ public:
 
   void accelerate(const Boundary& boundary, std::span<Vec3> accelerations) override {
     assert(accelerations.size() == boundary.particles.size());
-    const GravityProblem problem = gravity_problem(boundary, orbital_frequency_, positions_, masses_);
+    const gravity::GravityProblem problem = gravity_problem(boundary, orbital_frequency_, positions_, masses_);
     if (settings_.images.far) {
       const Vec3 origin = random_origin(boundary);
       parallel_for(positions_.size(), [&](std::size_t k) { positions_[k] -= origin; });
@@ -28,11 +28,11 @@ public:
     solver_->accelerate(problem, accelerations);
   }
 
-  std::optional<GravityEnergy> energy(const Boundary& boundary) override {
+  std::optional<gravity::GravityEnergy> energy(const Boundary& boundary) override {
     if (!has_energy_meter(settings_))
       return std::nullopt;
-    const GravityProblem problem = gravity_problem(boundary, orbital_frequency_, positions_, masses_);
-    if (auto* const solver = dynamic_cast<EnergyMeter*>(solver_.get())) // one mesh for both
+    const gravity::GravityProblem problem = gravity_problem(boundary, orbital_frequency_, positions_, masses_);
+    if (auto* const solver = dynamic_cast<gravity::EnergyMeter*>(solver_.get())) // one mesh for both
       return solver->energy(problem);
     if (!meter_)
       meter_ = make_energy_meter(settings_, masses_, problem.box.area(), problem.ranks);
@@ -49,8 +49,8 @@ private:
   GravitySettings settings_;
   double orbital_frequency_;
   std::uint64_t seed_;
-  std::unique_ptr<GravitySolver> solver_;
-  std::unique_ptr<EnergyMeter> meter_; // made when needed, if the solver is none
+  std::unique_ptr<gravity::GravitySolver> solver_;
+  std::unique_ptr<gravity::EnergyMeter> meter_; // made when needed, if the solver is none
   // scratch
   std::vector<Vec3> positions_;
   std::vector<double> masses_;
@@ -58,8 +58,8 @@ private:
 
 } // namespace
 
-GravityProblem gravity_problem(const Boundary& boundary, double orbital_frequency, std::vector<Vec3>& positions,
-                               std::vector<double>& masses) {
+gravity::GravityProblem gravity_problem(const Boundary& boundary, double orbital_frequency,
+                                        std::vector<Vec3>& positions, std::vector<double>& masses) {
   assert(orbital_frequency > 0.0);
   const Particles& particles = boundary.particles;
   const Rotation rotation = boundary.rotation();
@@ -175,4 +175,4 @@ GravitySettings gravity_settings(const Parameters& p) {
   return gravity;
 }
 
-} // namespace keeler
+} // namespace keeler::forces

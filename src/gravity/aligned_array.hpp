@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// An array of trivial values, not initialised. Growing loses them.
 template<class T> class AlignedArray {
@@ -52,4 +52,4 @@ private:
   std::unique_ptr<T, Free> values_;
 };
 
-} // namespace keeler
+} // namespace keeler::gravity

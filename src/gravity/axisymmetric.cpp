@@ -20,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-namespace keeler {
+namespace keeler::gravity {
 namespace {
 
 // A B-spline of order 8 spreads particles and interpolates forces, which conserves momentum. Its transform is divided
@@ -231,4 +231,4 @@ GravityEnergy AxisymmetricSolver::energy(const GravityProblem& problem) {
   return {-problem.newton_g * problem.box.size_x / problem.box.area() * sum, 0.0};
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

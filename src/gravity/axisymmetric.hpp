@@ -13,7 +13,7 @@
 #include <memory>
 #include <string>
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// Return the number of nodes of the mesh for a box of this width (m), a whole number without an upper bound, and the
 /// mesh's bytes on `threads` threads. Both can be called before a solver exists.
@@ -44,4 +44,4 @@ private:
   std::unique_ptr<Mesh> mesh_;
 };
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -11,7 +11,7 @@
 #include <limits>
 #include <memory>
 
-namespace keeler {
+namespace keeler::gravity {
 namespace {
 
 // The position and index of a particle, sorted in place of it while the tree is built.
@@ -321,4 +321,4 @@ void CellTree::build(std::span<const PointSource> particles, std::span<const std
   moments_ = std::move(all.moments);
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

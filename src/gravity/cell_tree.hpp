@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::gravity {
 
 struct TreeCell {
   float x, y, z;           ///< centre of mass
@@ -74,4 +74,4 @@ private:
   double mass_unit_ = 1.0;
 };
 
-} // namespace keeler
+} // namespace keeler::gravity

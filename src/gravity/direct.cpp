@@ -11,7 +11,7 @@
 #include <cassert>
 #include <numeric>
 
-namespace keeler {
+namespace keeler::gravity {
 namespace {
 
 // Particles folded into the cell, sorted by id.
@@ -21,7 +21,7 @@ struct Ordered {
 };
 
 Ordered ordered(const GravityProblem& problem, double offset) {
-  Ordered result{order_by_id(problem.ids), {}};
+  Ordered result{particles::order_by_id(problem.ids), {}};
   result.sources.reserve(result.order.size());
   for (const std::size_t k : result.order) {
     const Vec3 position = into_cell(problem.box, offset, problem.positions[k]);
@@ -148,4 +148,4 @@ std::vector<Vec3> sampled_accelerations(const GravityProblem& problem, std::span
   return result;
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

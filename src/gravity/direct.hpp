@@ -4,7 +4,7 @@
 #include <keeler/core/simd.hpp>
 #include <keeler/gravity/solver.hpp>
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// Precision of the sums over pairs. Single (with sums in doubles) is accurate to some 3e-7 and twice as fast.
 enum class Precision { double_precision, single_precision };
@@ -28,4 +28,4 @@ std::vector<Vec3> sampled_accelerations(const GravityProblem& problem, std::span
                                         const ImageSettings& images, InstructionSet set,
                                         Precision precision = Precision::double_precision);
 
-} // namespace keeler
+} // namespace keeler::gravity

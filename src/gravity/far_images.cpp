@@ -12,7 +12,7 @@
 #include <cmath>
 #include <complex>
 
-namespace keeler {
+namespace keeler::gravity {
 namespace {
 
 constexpr int degree = 14;
@@ -247,4 +247,4 @@ FarImages::Coefficients FarImages::potential_of(const Coefficients& moments) con
   return result;
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -22,7 +22,7 @@
 #include <cmath>
 #include <vector>
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// Returns the settings with enough rings for bodies at heights up to `height` (m): one per half of the shorter side,
 /// at least 1 and at most max_rings. Settings without far images are returned unchanged.
@@ -147,4 +147,4 @@ std::vector<Vec3> far_accelerations(const GravityProblem& problem, double offset
   return result;
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

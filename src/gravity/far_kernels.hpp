@@ -7,7 +7,7 @@
 
 #include <cstddef>
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// Monomials x^a y^b z^c with c <= height_degree and a + b + c <= degree; a runs fastest, then b, then c.
 struct PolynomialShape {
@@ -35,4 +35,4 @@ template<class Real> FarKernels<Real> far_kernels(InstructionSet set);
 template<> FarKernels<float> far_kernels(InstructionSet set);
 template<> FarKernels<double> far_kernels(InstructionSet set);
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -1,7 +1,7 @@
 // Source of the far images' kernels (far_kernels.hpp). Included like kernels.inl, with KEELER_KERNEL_SPACE and
 // KEELER_LANES (of doubles) set. Several vectors of bodies are interleaved, to hide the latency of their chains.
 
-namespace keeler::KEELER_KERNEL_SPACE {
+namespace keeler::gravity::KEELER_KERNEL_SPACE {
 namespace {
 
 template<class Real> struct Wide {
@@ -118,4 +118,4 @@ const FarKernels<float> far_single = {gather<float>, slopes<float>};
 extern const FarKernels<double> far_double;
 const FarKernels<double> far_double = {gather<double>, slopes<double>};
 
-} // namespace keeler::KEELER_KERNEL_SPACE
+} // namespace keeler::gravity::KEELER_KERNEL_SPACE

@@ -10,7 +10,7 @@
 #include <iterator>
 #include <vector>
 
-namespace keeler {
+namespace keeler::gravity {
 namespace {
 
 // Largest wave number times the spacing on a square mesh: the corner of its Brillouin zone.
@@ -231,4 +231,4 @@ GravityEnergy FftSolver::energy(const GravityProblem& problem) {
           -unit * (0.5 * (potentials[1] - potentials[0]) / strain + near.stress)};
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -12,7 +12,7 @@
 #include <memory>
 #include <span>
 
-namespace keeler {
+namespace keeler::gravity {
 
 struct FftSettings {
   double spacing = 0.0;    ///< of the mesh, m; the mesh may be slightly finer, or coarser for few particles
@@ -51,4 +51,4 @@ private:
   std::unique_ptr<Parts> parts_;
 };
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace keeler {
+namespace keeler::gravity {
 namespace {
 
 // Returns the heights of the particles of all ranks. Collective.
@@ -170,4 +170,4 @@ NearForces::Energy FftSolver::Parts::near_energy_distributed(const GravityProble
   return {sums.potential.value(), sums.stress.value()};
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

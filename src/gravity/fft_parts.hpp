@@ -17,7 +17,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// Exact sums of NearForces::Energy.
 struct NearSums {
@@ -80,4 +80,4 @@ struct FftSolver::Parts {
   SelfForce self{};
 };
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -7,7 +7,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::gravity {
 namespace {
 
 constexpr auto term_count = static_cast<Eigen::Index>(ForceSplit::terms);
@@ -104,4 +104,4 @@ double ForceSplit::transform(double wave_number) const {
   return samples_[k] + fraction * (samples_[k + 1] - samples_[k]);
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

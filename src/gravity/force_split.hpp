@@ -12,7 +12,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace keeler {
+namespace keeler::gravity {
 
 class ForceSplit {
 public:
@@ -36,4 +36,4 @@ private:
   std::vector<double> samples_; // of the transform, `fineness` per unit of wave number
 };
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace keeler {
+namespace keeler::gravity {
 
 GhostExchange::GhostExchange(std::vector<FoldedParticle>& particles, std::span<const std::uint64_t> per_column,
                              const TileFinder& find, const MeshPartition& partition, const Communicator& ranks)
@@ -86,4 +86,4 @@ void GhostExchange::append(std::vector<FoldedParticle>& particles, Buffers& rece
   assert(particles.size() == needed);
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

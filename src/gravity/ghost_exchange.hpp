@@ -20,7 +20,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::gravity {
 
 class GhostExchange {
 public:
@@ -68,4 +68,4 @@ private:
   std::size_t needed_ = 0;
 };
 
-} // namespace keeler
+} // namespace keeler::gravity

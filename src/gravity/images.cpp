@@ -3,7 +3,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::gravity {
 
 double folded_offset(const ShearingBox& box, double offset) {
   assert(box.size_y > 0.0);
@@ -27,4 +27,4 @@ Vec3 into_cell(const ShearingBox& box, double offset, const Vec3& position) {
   return position + box.displacement(image, offset);
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -10,7 +10,7 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// Returns the shear offset folded into [−L_y/2, L_y/2], exactly.
 double folded_offset(const ShearingBox& box, double offset);
@@ -22,4 +22,4 @@ std::vector<Vec3> image_shifts(const ShearingBox& box, double offset, int rings_
 /// Returns the image of a position inside the cell. Precondition: the offset is folded.
 Vec3 into_cell(const ShearingBox& box, double offset, const Vec3& position);
 
-} // namespace keeler
+} // namespace keeler::gravity

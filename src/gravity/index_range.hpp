@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cstddef>
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// Invariant: begin <= end.
 struct IndexRange {
@@ -17,4 +17,4 @@ struct IndexRange {
   bool contains(std::size_t index) const { return index >= begin && index < end; }
 };
 
-} // namespace keeler
+} // namespace keeler::gravity

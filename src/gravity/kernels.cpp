@@ -1,7 +1,7 @@
 #include "kernels.hpp"
 #include "far_kernels.hpp"
 
-namespace keeler {
+namespace keeler::gravity {
 
 namespace kernels_portable {
 extern const AttractionKernels kernels;
@@ -51,4 +51,4 @@ template<> FarKernels<double> far_kernels([[maybe_unused]] InstructionSet set) {
   return kernels_portable::far_double;
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

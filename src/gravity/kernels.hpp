@@ -17,7 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// A particle, or an image of one.
 struct PointSource {
@@ -107,4 +107,4 @@ struct AttractionKernels {
 /// Returns the kernels of a set. Precondition: the processor supports it.
 AttractionKernels attraction_kernels(InstructionSet set);
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -2,7 +2,7 @@
 // vectors of one register: Lanes and Longs (of doubles and 64-bit integers), Floats and Ints (twice as many lanes), and
 // larger(a, b), which is a > b ? a : b.
 
-namespace keeler::KEELER_KERNEL_SPACE {
+namespace keeler::gravity::KEELER_KERNEL_SPACE {
 namespace {
 
 constexpr std::size_t float_lanes = 2 * KEELER_LANES;
@@ -257,4 +257,4 @@ void local(SingleTargetBlock& t, std::size_t target_count, const LocalTerms& ter
 extern const AttractionKernels kernels;
 const AttractionKernels kernels = {points, points_single, cells, far_cells, local};
 
-} // namespace keeler::KEELER_KERNEL_SPACE
+} // namespace keeler::gravity::KEELER_KERNEL_SPACE

@@ -6,7 +6,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::gravity {
 namespace {
 
 // Returns e^{kz} erfc(k r_s + z / 2r_s), which is 0 long before its factors overflow or underflow.
@@ -96,4 +96,4 @@ Vec3 Lattice::acceleration(const Vec3& displacement) const {
   return sum;
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -11,7 +11,7 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// A wave that is periodic in the sheared box; one of each pair ±k.
 struct LatticeWave {
@@ -56,4 +56,4 @@ private:
   std::vector<LatticeWave> waves_;
 };
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -1,6 +1,6 @@
 #include "local_expansion.hpp"
 
-namespace keeler {
+namespace keeler::gravity {
 namespace {
 
 void complete2(float* t) {
@@ -58,4 +58,4 @@ void complete(LocalTerms& terms) {
   complete4(terms.rank4);
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -8,9 +8,9 @@
 
 #include "kernels.hpp"
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// Removes the traces of the tensors of rank 2, 3 and 4. Idempotent up to rounding.
 void complete(LocalTerms& terms);
 
-} // namespace keeler
+} // namespace keeler::gravity

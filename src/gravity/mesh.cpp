@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace keeler {
+namespace keeler::gravity {
 namespace {
 
 // Returns true for 2^a 3^b 5^c, even; above 96 only multiples of 4.
@@ -93,4 +93,4 @@ void Mesh::spread(const SortedParticles& sorted, const IndexRange& tile_columns,
   }
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

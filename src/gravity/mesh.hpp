@@ -18,7 +18,7 @@
 #include <cassert>
 #include <utility>
 
-namespace keeler {
+namespace keeler::gravity {
 
 struct MeshShape {
   static constexpr std::size_t order = 4;
@@ -78,4 +78,4 @@ private:
   AlignedArray<float> values_;
 };
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-namespace keeler {
+namespace keeler::gravity {
 
 Extent extent_of(std::span<const Vec3> positions) {
   if (!std::all_of(positions.begin(), positions.end(), [](const Vec3& p) { return p.allFinite(); }))
@@ -53,4 +53,4 @@ Tiling tiling_for(const MeshShape& shape, std::size_t count) {
   return {shape.columns, shape.rows, static_cast<std::size_t>(std::clamp(side, 1.0, max_side))};
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -8,7 +8,7 @@
 
 #include <span>
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// Distance of planes in spacings. The vertical attraction of a thin layer is coherent: errors along z matter most.
 inline constexpr double plane_spacing_ratio = 0.5;
@@ -34,4 +34,4 @@ double affordable_spacing(const ShearingBox& box, double spacing, const Extent& 
 /// Returns tiles of about 8 particles: few enough to be close together, enough to share the search for neighbours.
 Tiling tiling_for(const MeshShape& shape, std::size_t count);
 
-} // namespace keeler
+} // namespace keeler::gravity

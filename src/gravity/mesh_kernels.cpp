@@ -1,6 +1,6 @@
 #include "mesh_kernels.hpp"
 
-namespace keeler {
+namespace keeler::gravity {
 
 namespace mesh_portable {
 extern const MeshKernels mesh;
@@ -24,4 +24,4 @@ MeshKernels mesh_kernels([[maybe_unused]] InstructionSet set) {
   return mesh_portable::mesh;
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -8,7 +8,7 @@
 
 #include <cstddef>
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// Neighbours of one group, relative to its origin, in cut-off radii.
 struct NearSources {
@@ -92,4 +92,4 @@ struct MeshKernels {
 /// Returns the kernels of a set. Precondition: the processor supports it.
 MeshKernels mesh_kernels(InstructionSet set);
 
-} // namespace keeler
+} // namespace keeler::gravity

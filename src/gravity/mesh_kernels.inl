@@ -10,7 +10,7 @@
 //   Four rows_sum(const Sixteen&)                           (row 0 + row 2) + (row 1 + row 3)
 // Everything here has internal linkage except `mesh`.
 
-namespace keeler::KEELER_KERNEL_SPACE {
+namespace keeler::gravity::KEELER_KERNEL_SPACE {
 namespace {
 
 constexpr int parts = 16 / KEELER_LANES;
@@ -246,4 +246,4 @@ void convolve(const float* from, std::size_t planes, const float* near, std::siz
 extern const MeshKernels mesh;
 const MeshKernels mesh = {gather, attract, energy, spread, interpolate, convolve};
 
-} // namespace keeler::KEELER_KERNEL_SPACE
+} // namespace keeler::gravity::KEELER_KERNEL_SPACE

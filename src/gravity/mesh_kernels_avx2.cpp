@@ -28,8 +28,8 @@ inline Lanes difference(const double* from, double origin) {
   return _mm256_set_m128(high, low);
 }
 
-inline std::size_t append(keeler::NearSources& s, std::size_t count, const Lanes& x, const Lanes& y, const Lanes& z,
-                          const Lanes& mass, const IntLanes& inside) {
+inline std::size_t append(keeler::gravity::NearSources& s, std::size_t count, const Lanes& x, const Lanes& y,
+                          const Lanes& z, const Lanes& mass, const IntLanes& inside) {
   int mask = _mm256_movemask_ps(reinterpret_cast<const __m256&>(inside));
   for (; mask != 0; mask &= mask - 1) {
     const int lane = __builtin_ctz(static_cast<unsigned>(mask));

@@ -30,8 +30,8 @@ inline Lanes difference(const double* from, double origin) {
   return _mm512_castpd_ps(_mm512_mask_broadcast_f64x4(lower, 0xf0, _mm256_castps_pd(high)));
 }
 
-inline std::size_t append(keeler::NearSources& s, std::size_t count, const Lanes& x, const Lanes& y, const Lanes& z,
-                          const Lanes& mass, const IntLanes& inside) {
+inline std::size_t append(keeler::gravity::NearSources& s, std::size_t count, const Lanes& x, const Lanes& y,
+                          const Lanes& z, const Lanes& mass, const IntLanes& inside) {
   const __mmask16 mask = _mm512_test_epi32_mask(reinterpret_cast<const __m512i&>(inside), _mm512_set1_epi32(-1));
   _mm512_storeu_ps(s.x + count, _mm512_maskz_compress_ps(mask, x));
   _mm512_storeu_ps(s.y + count, _mm512_maskz_compress_ps(mask, y));

@@ -24,8 +24,8 @@ inline Lanes difference(const double* from, double origin) {
                static_cast<float>(from[2] - origin), static_cast<float>(from[3] - origin)};
 }
 
-inline std::size_t append(keeler::NearSources& s, std::size_t count, const Lanes& x, const Lanes& y, const Lanes& z,
-                          const Lanes& mass, const IntLanes& inside) {
+inline std::size_t append(keeler::gravity::NearSources& s, std::size_t count, const Lanes& x, const Lanes& y,
+                          const Lanes& z, const Lanes& mass, const IntLanes& inside) {
   for (int lane = 0; lane < KEELER_LANES; ++lane) {
     s.x[count] = x[lane];
     s.y[count] = y[lane];

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace keeler {
+namespace keeler::gravity {
 namespace {
 
 // Returns the first slab of each rank, then the number of slabs. Half the weight of a slab is its fraction of all
@@ -117,4 +117,4 @@ MeshPartition::MeshPartition(const MeshShape& shape, const Tiling& tiling, const
           static_cast<std::uint32_t>(r));
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -18,7 +18,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// The part of the mesh that one rank is assigned. A rank without columns may still have waves.
 struct MeshPart {
@@ -56,4 +56,4 @@ private:
   std::vector<std::vector<std::uint32_t>> ranks_needing_column_;
 };
 
-} // namespace keeler
+} // namespace keeler::gravity

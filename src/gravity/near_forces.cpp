@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::gravity {
 namespace {
 
 // Bounds of coordinates, m.
@@ -63,10 +63,10 @@ void NearForces::visit(const SortedParticles& sorted, const ShearingBox& box, do
 
   const Tiling& tiling = sorted.tiling();
   const auto axis = [&](double size, std::size_t cells, std::size_t tiles) {
-    return CellAxis(size, size * static_cast<double>(tiling.side) / static_cast<double>(cells), tiles);
+    return cells::CellAxis(size, size * static_cast<double>(tiling.side) / static_cast<double>(cells), tiles);
   };
-  const ShearedCells tiles{box, offset, axis(box.size_x, tiling.columns, tiling.tile_columns()),
-                           axis(box.size_y, tiling.rows, tiling.tile_rows())};
+  const cells::ShearedCells tiles{box, offset, axis(box.size_x, tiling.columns, tiling.tile_columns()),
+                                  axis(box.size_y, tiling.rows, tiling.tile_rows())};
   NearSources sources;
   const auto flush = [&] {
     flush_list(sources);
@@ -115,4 +115,4 @@ NearForces::Energy NearForces::energy(const SortedParticles& sorted, const Shear
   return sum;
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

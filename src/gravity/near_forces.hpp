@@ -12,7 +12,7 @@
 
 #include <array>
 
-namespace keeler {
+namespace keeler::gravity {
 
 class NearForces {
 public:
@@ -42,4 +42,4 @@ private:
   MeshKernels kernels_;
 };
 
-} // namespace keeler
+} // namespace keeler::gravity

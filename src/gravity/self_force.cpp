@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-namespace keeler {
+namespace keeler::gravity {
 namespace {
 
 // One axis at the wave numbers k = π (i + ½) / (points × spacing): the weight of a wave in the sums of the other axes,
@@ -68,4 +68,4 @@ SelfForce self_force(const MeshShape& shape, const ForceSplit& split, double rad
   return force;
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -11,9 +11,9 @@
 #include "force_split.hpp"
 #include "mesh.hpp"
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// Returns the self-force of a particle of mass 1 at G = 1, m^-2, for clouds of that radius (m).
 SelfForce self_force(const MeshShape& shape, const ForceSplit& split, double radius);
 
-} // namespace keeler
+} // namespace keeler::gravity

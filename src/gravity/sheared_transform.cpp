@@ -7,7 +7,7 @@
 #include <cmath>
 #include <new>
 
-namespace keeler {
+namespace keeler::gravity {
 namespace {
 
 // Two complex numbers, aligned like one. (A deduced type would lose the alignment.)
@@ -213,4 +213,4 @@ void ShearedTransform::backward_y(HalfSpectrum& half, Mesh& mesh) {
       1);
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

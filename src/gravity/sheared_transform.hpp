@@ -27,7 +27,7 @@
 #include <utility>
 #include <vector>
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// The spectrum between the transforms along y and x: waves m along y of ranges of columns (ghosts included), all
 /// planes. Layout: blocks of columns; in a block wave by wave; in a wave plane by plane, one cache line of eight
@@ -61,7 +61,7 @@ public:
   Complex* wave(std::size_t b, std::size_t m) { return values_.data() + position(b, m); }
 
   /// Returns a range of waves of a range of blocks, to be sent or received in place.
-  Blocks part(const IndexRange& blocks, const IndexRange& waves) {
+  comm::Blocks part(const IndexRange& blocks, const IndexRange& waves) {
     const std::size_t size = sizeof(Complex);
     if (blocks.size() == 0)
       return {};
@@ -174,4 +174,4 @@ private:
   fftwf_plan forward_y_ = nullptr, backward_y_ = nullptr, forward_x_ = nullptr, backward_x_ = nullptr;
 };
 
-} // namespace keeler
+} // namespace keeler::gravity

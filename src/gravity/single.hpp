@@ -7,7 +7,7 @@
 #include <bit>
 #include <cassert>
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// Splits a coordinate x into two floats: |x − high − low| < 2^-46 |x|.
 inline void split_position(double x, float& high, float& low) {
@@ -41,4 +41,4 @@ inline void put(FarCells& cells, std::size_t k, const CellSource& cell) {
   cells.yz[k] = cell.yz;
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -10,7 +10,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::gravity {
 namespace {
 
 using Solver = GravitySettings::Solver;
@@ -73,4 +73,4 @@ std::unique_ptr<EnergyMeter> make_energy_meter(const GravitySettings& settings, 
   return make_fft(chosen, masses, area, ranks);
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace keeler {
+namespace keeler::gravity {
 namespace {
 
 // The particles of a problem, at any position relative to the cell.
@@ -98,4 +98,4 @@ void SortedParticles::sort_source(const Source& source, const ShearingBox& box, 
   });
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

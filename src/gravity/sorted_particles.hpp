@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// Tiles are numbered column by column: tile (a, b) holds cells a × side … of x and b × side … of y.
 struct Tiling {
@@ -34,9 +34,11 @@ public:
     assert(tiling.side > 0 && tiling.columns > 0 && tiling.rows > 0);
   }
 
-  std::size_t column(double x) const { return cell_of(x, left_, columns_per_metre_, tiling_.columns) / tiling_.side; }
+  std::size_t column(double x) const {
+    return cells::cell_of(x, left_, columns_per_metre_, tiling_.columns) / tiling_.side;
+  }
   std::size_t tile(double x, double y) const {
-    return column(x) * tile_rows_ + cell_of(y, bottom_, rows_per_metre_, tiling_.rows) / tiling_.side;
+    return column(x) * tile_rows_ + cells::cell_of(y, bottom_, rows_per_metre_, tiling_.rows) / tiling_.side;
   }
 
 private:
@@ -122,4 +124,4 @@ private:
   double mass_unit_ = 1.0;
 };
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <numeric>
 
-namespace keeler {
+namespace keeler::gravity {
 
 SpectrumTranspose::SpectrumTranspose(const MeshPartition& partition) : blocks_(partition.parts().size()) {
   const std::span<const MeshPart> parts = partition.parts();
@@ -25,16 +25,16 @@ SpectrumTranspose::SpectrumTranspose(const MeshPartition& partition) : blocks_(p
 }
 
 // Returns, per rank, that rank's waves of all columns of this one.
-std::vector<Blocks> SpectrumTranspose::blocks_by_columns(HalfSpectrum& by_columns) const {
-  std::vector<Blocks> blocks;
+std::vector<comm::Blocks> SpectrumTranspose::blocks_by_columns(HalfSpectrum& by_columns) const {
+  std::vector<comm::Blocks> blocks;
   for (const IndexRange& waves : waves_)
     blocks.push_back(by_columns.part({0, by_columns.blocks()}, waves));
   return blocks;
 }
 
 // Returns, per rank, that rank's columns of all waves of this one.
-std::vector<Blocks> SpectrumTranspose::blocks_by_waves(HalfSpectrum& by_waves, const Communicator& ranks) const {
-  std::vector<Blocks> blocks;
+std::vector<comm::Blocks> SpectrumTranspose::blocks_by_waves(HalfSpectrum& by_waves, const Communicator& ranks) const {
+  std::vector<comm::Blocks> blocks;
   for (const IndexRange& columns : blocks_)
     blocks.push_back(by_waves.part(columns, waves_[ranks.rank()]));
   return blocks;
@@ -52,4 +52,4 @@ void SpectrumTranspose::to_columns(HalfSpectrum& by_waves, HalfSpectrum& by_colu
   ranks.exchange(blocks_by_waves(by_waves, ranks), blocks_by_columns(by_columns));
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -18,7 +18,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// The layout of one solve. The spectra are arguments: their memory outlives it.
 class SpectrumTranspose {
@@ -34,12 +34,12 @@ public:
   void to_columns(HalfSpectrum& by_waves, HalfSpectrum& by_columns, const Communicator& ranks) const;
 
 private:
-  std::vector<Blocks> blocks_by_columns(HalfSpectrum& by_columns) const;
-  std::vector<Blocks> blocks_by_waves(HalfSpectrum& by_waves, const Communicator& ranks) const;
+  std::vector<comm::Blocks> blocks_by_columns(HalfSpectrum& by_columns) const;
+  std::vector<comm::Blocks> blocks_by_waves(HalfSpectrum& by_waves, const Communicator& ranks) const;
 
   std::vector<IndexRange> columns_;
   std::vector<IndexRange> blocks_; // per rank: its blocks in the layout by waves
   std::vector<IndexRange> waves_;  // per rank
 };
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// Returns the transform of the spline, 1 at 0.
 inline double spline_transform(double angle) {
@@ -19,4 +19,4 @@ inline double aliased_spline_squares(double cosine) {
   return (2416.0 + 2.0 * (1191.0 * cosine + 120.0 * twice + thrice)) / 5040.0;
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

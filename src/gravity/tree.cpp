@@ -13,7 +13,7 @@
 #include <limits>
 #include <numeric>
 
-namespace keeler {
+namespace keeler::gravity {
 namespace {
 
 constexpr std::uint32_t group_size = SingleTargetBlock::capacity;
@@ -318,4 +318,4 @@ void TreeSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accel
   parallel_for(count, [&](std::size_t k) { accelerations[tree_.order()[k]] = total[k] - mean; });
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

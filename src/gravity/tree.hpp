@@ -8,7 +8,7 @@
 #include <keeler/gravity/images.hpp>
 #include <keeler/gravity/solver.hpp>
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// A cell attracts a group as a whole if size < opening_angle × (distance from the group's box to the cell's centre of
 /// mass) and the two boxes cannot overlap; otherwise it is opened, down to particles. The size is the longest side of
@@ -31,4 +31,4 @@ private:
   std::vector<PointSource> in_cell_;
 };
 
-} // namespace keeler
+} // namespace keeler::gravity

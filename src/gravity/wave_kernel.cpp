@@ -10,7 +10,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::gravity {
 namespace {
 
 constexpr std::size_t k_steps = 1024, window_steps = 1024;
@@ -177,4 +177,4 @@ void WaveKernel::apply(const MeshShape& shape, const ShearedTransform& transform
     add_sheets(shape, row, from, to);
 }
 
-} // namespace keeler
+} // namespace keeler::gravity

@@ -16,7 +16,7 @@
 #include <complex>
 #include <vector>
 
-namespace keeler {
+namespace keeler::gravity {
 
 class WaveKernel {
 public:
@@ -53,4 +53,4 @@ private:
   double max_k_;
 };
 
-} // namespace keeler
+} // namespace keeler::gravity

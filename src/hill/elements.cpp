@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-namespace keeler {
+namespace keeler::hill {
 namespace {
 
 // Taylor series, truncated where terms are below half an ulp for |a| <= pi/4 (long) and |a| <= 0.01 (short). The choice
@@ -130,4 +130,4 @@ FixedRotation::FixedRotation(double angle) {
 Rebase::Rebase(const Frequencies& f, double interval)
     : shift_(f.shear() * interval), e_(f.kappa * interval), i_(f.nu * interval) {}
 
-} // namespace keeler
+} // namespace keeler::hill

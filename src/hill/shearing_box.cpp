@@ -3,7 +3,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::hill {
 namespace {
 
 // Returns the index of the box in which a coordinate, in box lengths, lies. It is limited to ±2³⁰, also for NaN; such
@@ -35,4 +35,4 @@ Image ShearingBox::far_image_into_cell(double x, double y, double offset) const 
   return image;
 }
 
-} // namespace keeler
+} // namespace keeler::hill

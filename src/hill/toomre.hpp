@@ -3,7 +3,7 @@
 
 #include <keeler/core/units.hpp>
 
-namespace keeler {
+namespace keeler::hill {
 
 /// Returns λ_cr = 4π² G Σ / κ²: the longest wavelength at which gravity overcomes shear and rotation, and approximately
 /// the spacing of self-gravity wakes.
@@ -16,4 +16,4 @@ inline double toomre_q(double newton_g, double surface_density, double kappa, do
   return kappa * dispersion / (3.36 * newton_g * surface_density);
 }
 
-} // namespace keeler
+} // namespace keeler::hill

@@ -12,7 +12,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 namespace {
 
 // Returns a uniform position in the unit ball.
@@ -45,8 +45,8 @@ std::vector<Vec3> pack_ball(std::span<const double> radii, double ball_radius, s
   return positions;
 }
 
-std::vector<HeldBody> aggregate_bodies(const AggregateSettings& aggregate, std::size_t number, const Material& material,
-                                       const Frequencies& frequencies, std::uint64_t seed) {
+std::vector<HeldBody> aggregate_bodies(const scene::AggregateSettings& aggregate, std::size_t number,
+                                       const Material& material, const Frequencies& frequencies, std::uint64_t seed) {
   assert(material.radii.size() == aggregate.count && material.densities.size() == aggregate.count);
   const std::vector<Vec3> positions = pack_ball(material.radii, aggregate.radius, seed, aggregate.first);
   if (positions.empty())
@@ -68,4 +68,4 @@ std::vector<HeldBody> aggregate_bodies(const AggregateSettings& aggregate, std::
   return bodies;
 }
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

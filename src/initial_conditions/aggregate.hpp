@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 /// One entry per particle.
 struct Material {
@@ -24,7 +24,7 @@ std::vector<Vec3> pack_ball(std::span<const double> radii, double ball_radius, s
 
 /// Returns the particles of the scene's aggregate `number`, from 1. Its centre of mass is on a circular orbit, about
 /// which it rotates rigidly. Throws UsageError if the particles cannot be packed.
-std::vector<HeldBody> aggregate_bodies(const AggregateSettings& aggregate, std::size_t number, const Material& material,
-                                       const Frequencies& frequencies, std::uint64_t seed);
+std::vector<HeldBody> aggregate_bodies(const scene::AggregateSettings& aggregate, std::size_t number,
+                                       const Material& material, const Frequencies& frequencies, std::uint64_t seed);
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

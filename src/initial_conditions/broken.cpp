@@ -5,11 +5,11 @@
 
 #include <fmt/format.h>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 namespace {
 
 // Returns "the state is in …", or the reason why it is not.
-std::string save(Patch patch, const std::filesystem::path& file, const SnapshotMeta& meta) {
+std::string save(Patch patch, const std::filesystem::path& file, const io::SnapshotMeta& meta) {
   const std::size_t left_out = keep_possible(patch);
   if (patch.size() == 0)
     return "no particle of the state can be saved";
@@ -52,9 +52,9 @@ std::size_t keep_possible(Patch& patch) {
 BrokenState::BrokenState(const InvariantError& error, const Simulation& simulation)
     : InvariantError(error), step(simulation.state().step), patch(simulation.patch_at_break()) {}
 
-std::string save_broken(const BrokenState& broken, const std::filesystem::path& file, const SnapshotMeta& meta) {
+std::string save_broken(const BrokenState& broken, const std::filesystem::path& file, const io::SnapshotMeta& meta) {
   return fmt::format("{}; this was at step {}, orbit {}, and {}", broken.what(), broken.step,
                      format_number(broken.patch.time_orbits), save(broken.patch, file, meta));
 }
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

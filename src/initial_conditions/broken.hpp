@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <string>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 /// Removes the particles that are not valid in a snapshot (particle_fault). Returns their number.
 std::size_t keep_possible(Patch& patch);
@@ -23,6 +23,6 @@ struct BrokenState : InvariantError {
 
 /// Writes a snapshot of the valid particles. Returns the message of the error, the time, and the file or the reason why
 /// the state could not be saved.
-std::string save_broken(const BrokenState& broken, const std::filesystem::path& file, const SnapshotMeta& meta);
+std::string save_broken(const BrokenState& broken, const std::filesystem::path& file, const io::SnapshotMeta& meta);
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

@@ -18,7 +18,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 namespace {
 
 void require_gravity(const Scene& scene) {
@@ -37,10 +37,10 @@ void require_room_to_settle(const SettleCriterion& criterion) {
 }
 
 void require_visible_wakes(const Patch& patch) {
-  if (patch.size() == 0 || wake_power(patch, critical_wavelength(patch)).snapshots == 0)
+  if (patch.size() == 0 || diagnostics::wake_power(patch, diagnostics::critical_wavelength(patch)).snapshots == 0)
     throw UsageError(fmt::format("wakes would not be visible in this patch ({} particles; lambda_cr, {:.3g} m, spans "
                                  "too few of them); use more particles, a higher optical depth or a larger box",
-                                 patch.size(), patch.size() ? critical_wavelength(patch) : 0.0));
+                                 patch.size(), patch.size() ? diagnostics::critical_wavelength(patch) : 0.0));
 }
 
 // Returns a whole number of kick intervals: within an interval the closing half kick is missing.
@@ -51,13 +51,13 @@ std::int64_t steps_between_samples(const Scene& scene, const SettleCriterion& cr
 }
 
 SettleSample sample_of(const Simulation& simulation) {
-  const ParticleMeans means = simulation.means();
-  const EnergyBalance balance = simulation.balance(means);
-  const std::optional<GravityEnergy> gravity = simulation.gravity_energy();
+  const diagnostics::ParticleMeans means = simulation.means();
+  const simulation::EnergyBalance balance = simulation.balance(means);
+  const std::optional<gravity::GravityEnergy> gravity = simulation.gravity_energy();
   const Patch patch = simulation.patch();
   const double work = balance.lost + balance.energy + (gravity ? gravity->potential : 0.0);
-  return {simulation.orbits(), loss_viscosity(work, means.mass, patch.box.shear, 1.0),
-          wake_power(patch, critical_wavelength(patch))};
+  return {simulation.orbits(), diagnostics::loss_viscosity(work, means.mass, patch.box.shear, 1.0),
+          diagnostics::wake_power(patch, diagnostics::critical_wavelength(patch))};
 }
 
 void advance(Simulation& simulation) {
@@ -80,7 +80,7 @@ std::string difference(const char* name, const WindowMeans& means, const MeanBou
                 fmt::format("no wakes in the patch after {:.3g} orbits (they exceed the noise in {:.0f} % of the "
                             "samples): it is too light or too hot to clump (Toomre's Q is {:.3g}); raise the "
                             "optical depth or the density of the particles",
-                            c.orbits, 100.0 * s.standing, toomre_q(patch)));
+                            c.orbits, 100.0 * s.standing, diagnostics::toomre_q(patch)));
   throw Error(
       ExitCode::run_time,
       fmt::format("the wakes did not settle in {:.3g} orbits (between the last {} orbits and the {} before, these "
@@ -119,7 +119,7 @@ ClumpedState clumped_state(const Scene& scene, const SettleCriterion& criterion,
     const bool sample = simulation.state().step % every == 0;
     if (sample) {
       const SettleSample& last = history.emplace_back(sample_of(simulation));
-      const WakeWaves waves = wake_waves(last.waves);
+      const diagnostics::WakeWaves waves = wake_waves(last.waves);
       clumping.history.push_back({last.orbits, last.work, waves.contrast, waves.wavelength, waves.radial_wavelength});
       p.contrast = waves.contrast;
       p.settling = compare_windows(history, orbit, criterion);
@@ -177,4 +177,4 @@ std::map<std::string, std::vector<double>> clumping_numbers(const Clumping& clum
   return numbers;
 }
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

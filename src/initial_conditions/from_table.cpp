@@ -18,14 +18,14 @@
 #include <cmath>
 #include <numeric>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 namespace {
 
-[[noreturn]] void fail(const ParticleTable& table, std::size_t k, const std::string& fault) {
+[[noreturn]] void fail(const io::ParticleTable& table, std::size_t k, const std::string& fault) {
   throw UsageError(fmt::format("{}: the particle has {}; correct it or remove the row", table.location_of(k), fault));
 }
 
-void require_fitting(const ParticleTable& table, const TableScene& of) {
+void require_fitting(const io::ParticleTable& table, const scene::TableScene& of) {
   if (table.masses.empty() && !of.density)
     throw UsageError(
         fmt::format("{}: no column m, and the scene has no particles.density (one of them is needed for the masses); "
@@ -40,7 +40,7 @@ void require_fitting(const ParticleTable& table, const TableScene& of) {
 
 } // namespace
 
-Patch patch_from_table(const ParticleTable& table, const TableScene& of) {
+Patch patch_from_table(const io::ParticleTable& table, const scene::TableScene& of) {
   assert(table.positions.size() == table.size() && table.radii.size() == table.size());
   require_fitting(table, of);
   const Scene& scene = of.scene;
@@ -68,7 +68,7 @@ Patch patch_from_table(const ParticleTable& table, const TableScene& of) {
     if (!fault.empty())
       fail(table, k, fault);
   }
-  require_no_heap(patch, table.file);
+  cells::require_no_heap(patch, table.file);
   return patch;
 }
 
@@ -76,7 +76,8 @@ Relaxation relax(Patch& patch) {
   assert(patch.positions.size() == patch.size() && patch.velocities.size() == patch.size());
   constexpr int max_sweeps = 4000;
   constexpr std::size_t max_each = 50; // an equal sphere has room for 12 neighbours
-  if (const std::size_t overlaps = count_overlaps(patch, allowed_overlap); overlaps > max_each * patch.size())
+  if (const std::size_t overlaps = cells::count_overlaps(patch, cells::allowed_overlap);
+      overlaps > max_each * patch.size())
     throw InvariantError(
         fmt::format("{} overlap in {} pairs (more than {} per particle are a heap, for which no room can be made); "
                     "spread them out",
@@ -103,4 +104,4 @@ Relaxation relax(Patch& patch) {
   return result;
 }
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

@@ -9,13 +9,13 @@
 
 #include <cstddef>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 /// Returns the particles of a table in the scene's box, with a shear offset of zero. Particle k of the table gets the
 /// id k. Missing masses follow from the scene's density, missing velocities from circular orbits. Throws
 /// UsageError, naming the row, for an invalid particle, one farther outside the box than its epicycle explains, or
 /// without a mass, and for spins if the scene has no friction; InvariantError for heaps of overlapping particles.
-Patch patch_from_table(const ParticleTable& table, const TableScene& scene);
+Patch patch_from_table(const io::ParticleTable& table, const scene::TableScene& scene);
 
 /// Result of relax().
 struct Relaxation {
@@ -27,4 +27,4 @@ struct Relaxation {
 /// (docs/dev/starts.md). Each keeps its velocity relative to the shear flow. Throws InvariantError if there is no room.
 Relaxation relax(Patch& patch);
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

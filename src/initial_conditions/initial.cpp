@@ -26,12 +26,12 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 namespace {
 
 // Epicycles around one planet are not epicycles around another: the shear would be wrong everywhere.
 void require_same_planet(const Patch& patch, const Scene& scene, const std::string& path) {
-  const PlanetSettings& planet = scene.planet;
+  const scene::PlanetSettings& planet = scene.planet;
   const auto differ = [](double a, double b) { return !(std::fabs(a - b) <= 1e-6 * std::fabs(b)); };
   if (differ(patch.orbital_frequency, planet.orbital_frequency) ||
       differ(patch.frequencies.kappa, planet.frequencies.kappa) || differ(patch.frequencies.nu, planet.frequencies.nu))
@@ -83,27 +83,28 @@ double own_room(const UniformRequest& request, const Communicator& ranks) {
   if (area == 0.0)
     return 0.0;
   const double radius = crowd_volume(request.radii, ranks) / (4.0 / 3.0 * area);
-  const double height_in_radii = layer_height(area / request.box.area(), {1.0, 1.0}, 0.0, request.frequencies.nu);
+  const double height_in_radii =
+      scene::layer_height(area / request.box.area(), {1.0, 1.0}, 0.0, request.frequencies.nu);
   return std::pow(radius * height_in_radii, 2);
 }
 
 Streamlines streamlines_of(const Scene& scene) {
-  const StreamlineSettings& settings = scene.particles.streamlines;
+  const scene::StreamlineSettings& settings = scene.particles.streamlines;
   Streamlines streamlines = Streamlines::bunched(settings.waves, scene.size_x, settings.bunching);
   streamlines.inclination = settings.inclination * scene.particles.sizes.mean_power(1);
-  for (const ModeSettings& mode : scene.particles.modes) {
-    const auto add = mode.direction == ModeSettings::Direction::outward  ? &Streamlines::add_outward
-                     : mode.direction == ModeSettings::Direction::inward ? &Streamlines::add_inward
-                                                                         : &Streamlines::add_standing;
+  for (const scene::ModeSettings& mode : scene.particles.modes) {
+    const auto add = mode.direction == scene::ModeSettings::Direction::outward  ? &Streamlines::add_outward
+                     : mode.direction == scene::ModeSettings::Direction::inward ? &Streamlines::add_inward
+                                                                                : &Streamlines::add_standing;
     (streamlines.*add)(mode.waves, scene.size_x, mode.amplitude, mode.phase_degrees * pi / 180.0);
   }
   return streamlines;
 }
 
 // Adds the aggregates; their particles are the last ones; other particles are placed around their balls.
-void hold_aggregates(const Scene& scene, const DrawnSizes& sizes, UniformRequest& request) {
+void hold_aggregates(const Scene& scene, const particles::DrawnSizes& sizes, UniformRequest& request) {
   std::size_t number = 0;
-  for (const AggregateSettings& aggregate : scene.particles.aggregates) {
+  for (const scene::AggregateSettings& aggregate : scene.particles.aggregates) {
     std::vector<double> radii, densities;
     for (std::size_t k = aggregate.first; k < aggregate.first + aggregate.count; ++k) {
       radii.push_back(sizes.radius(k));
@@ -117,7 +118,7 @@ void hold_aggregates(const Scene& scene, const DrawnSizes& sizes, UniformRequest
 
 std::vector<HeldBody> moonlets_of(const Scene& scene) {
   std::vector<HeldBody> moonlets;
-  for (const MoonletSettings& m : scene.moonlets) {
+  for (const scene::MoonletSettings& m : scene.moonlets) {
     const Vec3 circular(0.0, -scene.planet.frequencies.shear() * m.position.x(), 0.0);
     moonlets.push_back({m.position, circular + m.velocity / scene.planet.orbital_frequency, m.radius, m.mass});
   }
@@ -126,22 +127,23 @@ std::vector<HeldBody> moonlets_of(const Scene& scene) {
 
 std::vector<ClosedBall> closed_balls(const Scene& scene) {
   std::vector<ClosedBall> balls;
-  for (const AggregateSettings& aggregate : scene.particles.aggregates)
+  for (const scene::AggregateSettings& aggregate : scene.particles.aggregates)
     balls.push_back({aggregate.position, aggregate.radius});
-  for (const MoonletSettings& moonlet : scene.moonlets)
+  for (const scene::MoonletSettings& moonlet : scene.moonlets)
     balls.push_back({moonlet.position, moonlet.radius});
   return balls;
 }
 
 // Draws the radii of this rank's particles.
-void take_radii(const DrawnSizes& sizes, std::size_t count, const Communicator& ranks, UniformRequest& request) {
+void take_radii(const particles::DrawnSizes& sizes, std::size_t count, const Communicator& ranks,
+                UniformRequest& request) {
   request.first = count * ranks.rank() / ranks.size();
   request.radii.resize(count * (ranks.rank() + 1) / ranks.size() - request.first);
   parallel_for(request.radii.size(), [&](std::size_t k) { request.radii[k] = sizes.radius(request.first + k); });
 }
 
 UniformRequest request_of(const Scene& scene, const Communicator& ranks) {
-  const DrawnSizes sizes(scene.particles.sizes, scene.particles.count, scene.particles.seed);
+  const particles::DrawnSizes sizes(scene.particles.sizes, scene.particles.count, scene.particles.seed);
   const double mean_radius = scene.particles.sizes.mean_power(1);
   UniformRequest request;
   request.box = {scene.size_x, scene.size_y, scene.planet.frequencies.shear(), 0.0};
@@ -151,7 +153,7 @@ UniformRequest request_of(const Scene& scene, const Communicator& ranks) {
   if (sizes.has_densities())
     request.density_of = [sizes](std::uint64_t id) { return sizes.density(id); };
   request.dispersion_x = scene.particles.velocity_dispersion * mean_radius;
-  request.dispersion_z = vertical_fraction * request.dispersion_x;
+  request.dispersion_z = scene::vertical_fraction * request.dispersion_x;
   request.streamlines = streamlines_of(scene);
   request.pattern = scene.particles.pattern;
   request.seed = scene.particles.seed;
@@ -168,7 +170,7 @@ UniformRequest request_of(const Scene& scene, const Communicator& ranks) {
 // Rough particles of an aggregate rotate with it rigidly.
 void spin_aggregates(const Scene& scene, Patch& patch) {
   patch.spins.assign(patch.size(), Vec3::Zero());
-  for (const AggregateSettings& a : scene.particles.aggregates) {
+  for (const scene::AggregateSettings& a : scene.particles.aggregates) {
     const auto first = std::lower_bound(patch.ids.begin(), patch.ids.end(), a.first);
     for (auto id = first; id != patch.ids.end() && *id < a.first + a.count; ++id)
       patch.spins[static_cast<std::size_t>(id - patch.ids.begin())].z() = a.spin;
@@ -184,7 +186,7 @@ void require_start_file(const Scene& scene) {
 }
 
 Patch patch_from_snapshot(const std::string& path, const Scene& scene) {
-  return patch_from_snapshot(read_snapshot(path).patch, path, scene);
+  return patch_from_snapshot(io::read_snapshot(path).patch, path, scene);
 }
 
 Patch patch_from_snapshot(Patch patch, const std::string& path, const Scene& scene, const Communicator& ranks) {
@@ -209,8 +211,8 @@ Patch patch_from_snapshot(Patch patch, const std::string& path, const Scene& sce
 namespace {
 
 // Returns the largest of all ranks' bodies, the heaviest of equal ones.
-PatchScale::Sphere largest_of(const Patch& patch, const Communicator& ranks) {
-  PatchScale::Sphere largest;
+scene::PatchScale::Sphere largest_of(const Patch& patch, const Communicator& ranks) {
+  scene::PatchScale::Sphere largest;
   for (const double radius : patch.radii)
     largest.radius = std::max(largest.radius, radius);
   largest.radius = ranks.max(largest.radius);
@@ -223,7 +225,7 @@ PatchScale::Sphere largest_of(const Patch& patch, const Communicator& ranks) {
 
 } // namespace
 
-PatchScale scale_of(const Patch& patch, const Communicator& ranks) {
+scene::PatchScale scale_of(const Patch& patch, const Communicator& ranks) {
   const auto total_of = [&](const auto& term) {
     return exact_total<ExactSum>(patch.size(), [&](ExactSum& sum, std::size_t k) { sum += term(k); });
   };
@@ -234,10 +236,10 @@ PatchScale scale_of(const Patch& patch, const Communicator& ranks) {
   ExactSum squares = total_of_power(2), cubes = total_of_power(3), sixths = total_of_power(6);
   ranks.merge({&masses, &squares, &cubes, &sixths});
   const double mass = masses.value();
-  const BodySums sums{mass, squares.value(), cubes.value(), sixths.value(), largest_of(patch, ranks)};
-  PatchScale scale = scale_of(
+  const scene::BodySums sums{mass, squares.value(), cubes.value(), sixths.value(), largest_of(patch, ranks)};
+  scene::PatchScale scale = scale_of(
       sums, ranks.sum(patch.size()), patch.box.size_x, patch.box.size_y,
-      critical_wavelength(newton_g(patch.orbital_frequency), mass / patch.box.area(), patch.frequencies.kappa));
+      hill::critical_wavelength(newton_g(patch.orbital_frequency), mass / patch.box.area(), patch.frequencies.kappa));
   scale.start = start_scale_of(patch, mass, ranks);
   return scale;
 }
@@ -259,7 +261,7 @@ Patch initial_patch(const Scene& scene, const std::function<void(const StartProg
                     const Communicator& ranks) {
   if (scene.start_from) {
     const std::string& path = *scene.start_from;
-    return thinned(patch_from_snapshot(read_snapshot(path, ranks).patch, path, scene, ranks), scene, ranks);
+    return thinned(patch_from_snapshot(io::read_snapshot(path, ranks).patch, path, scene, ranks), scene, ranks);
   }
   constexpr double placing_bytes = 250.0; // per particle: the patch, its spheres and their neighbours
   const double count = static_cast<double>(scene.particles.count);
@@ -271,4 +273,4 @@ Patch initial_patch(const Scene& scene, const std::function<void(const StartProg
   return scene.particles.start ? placed_patch(scene, moonlets_of(scene), ranks) : fresh_patch(scene, progress, ranks);
 }
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

@@ -5,7 +5,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 double LayerProfile::midplane_density() const {
   if (slab == 0.0)
@@ -29,4 +29,4 @@ LayerProfile LayerProfile::of_height(double height, double filling, double large
   return with_slab(high);
 }
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

@@ -2,7 +2,7 @@
 // Dense rings are flat-topped too.
 #pragma once
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 /// z = slab × u + sigma × n, u uniform in (−1, 1), n normal: ⟨z²⟩ = slab²/3 + sigma².
 struct LayerProfile {
@@ -18,4 +18,4 @@ struct LayerProfile {
   double midplane_density() const;
 };
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

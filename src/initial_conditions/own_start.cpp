@@ -9,15 +9,15 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 namespace {
 
 struct Sizes {
   std::vector<double> radii, masses;
 };
 
-Sizes sizes_of(const ParticleSettings& particles) {
-  const DrawnSizes drawn(particles.sizes, particles.count, particles.seed);
+Sizes sizes_of(const scene::ParticleSettings& particles) {
+  const particles::DrawnSizes drawn(particles.sizes, particles.count, particles.seed);
   Sizes sizes;
   for (std::size_t k = 0; k < particles.count; ++k) {
     const double density = drawn.has_densities() ? drawn.density(k) : particles.density;
@@ -36,8 +36,8 @@ void require_possible_state(const Patch& patch, std::size_t k, const char* name)
 }
 
 void place(const Scene& scene, Patch& patch) {
-  const ParticleSettings& particles = scene.particles;
-  const StartSettings& start = *particles.start;
+  const scene::ParticleSettings& particles = scene.particles;
+  const scene::StartSettings& start = *particles.start;
   const Sizes sizes = sizes_of(particles);
   const std::vector<State> states = start.entry->place(
       start.parameters, {sizes.radii, sizes.masses, patch.box, patch.frequencies, patch.orbital_frequency,
@@ -67,4 +67,4 @@ Patch placed_patch(const Scene& scene, const std::vector<HeldBody>& moonlets, co
   return patch;
 }
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

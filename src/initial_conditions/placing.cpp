@@ -15,7 +15,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 namespace {
 
 constexpr int usual_sweeps = 120, sweeps_per_round = 400, max_rounds = 12;
@@ -102,7 +102,7 @@ bool Placing::is_free(const Trial& trial, const SizeLevels& larger) const {
 
 // Draws it uniformly, or from the density pattern by von Neumann's rejection.
 std::pair<double, double> Placing::draw_guiding_centre(RandomStream& random) const {
-  const DensityPattern& pattern = request_.pattern;
+  const scene::DensityPattern& pattern = request_.pattern;
   for (;;) {
     const double x = (random.uniform() - 0.5) * request_.box.size_x, y = (random.uniform() - 0.5) * request_.box.size_y;
     if (pattern.uniform() || random.uniform() * pattern.peak() < pattern.relative(x, y))
@@ -126,7 +126,7 @@ void Placing::try_another_position(Trial& trial) const {
                motion = request_.dispersion_z / f.nu;
   const double height = std::sqrt(motion * motion + request_.own_room * crowding);
   const double filling = crowding * crowd_volume_ / request_.box.area() / (std::sqrt(two_pi) * height);
-  const LayerProfile profile = LayerProfile::of_height(height, filling, largest_filling);
+  const LayerProfile profile = LayerProfile::of_height(height, filling, scene::largest_filling);
   const double stretch = 1.0 + heights;
   trial.position = Vec3(guiding_x - streamline.e_cos, guiding_y + 2.0 / f.kappa * streamline.e_sin,
                         stretch * (profile.slab * trial.flat + profile.sigma * trial.normal));
@@ -245,4 +245,4 @@ std::vector<Sphere> Placing::take_particles() {
   return std::move(spheres_);
 }
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

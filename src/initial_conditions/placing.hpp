@@ -18,7 +18,7 @@
 
 #include <utility>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 /// Returns the volume (m³) of the particles, each weighted by 1 − its fraction of the mass, so that a dominant moonlet
 /// does not count. Collective: each rank has the radii of some particles.
@@ -66,4 +66,4 @@ private:
   std::vector<Sphere> spheres_; // placed so far
 };
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

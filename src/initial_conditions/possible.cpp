@@ -14,7 +14,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 namespace {
 
 // A number of the frame, stored in /RingBox of a snapshot.
@@ -34,9 +34,11 @@ void require_in_range(const FrameNumber& number, const std::string& path) {
 void require_possible_orbits(const Patch& patch, const std::string& path) {
   constexpr double longest_run = 1e15; // orbits
   const Frequencies& frequencies = patch.frequencies;
-  require_in_range({"an Omega", patch.orbital_frequency, " rad/s", find_key("planet.orbital_frequency")->range}, path);
-  require_in_range({"a kappa_over_Omega", frequencies.kappa, "", find_key("planet.epicyclic_ratio")->range}, path);
-  require_in_range({"a nu_over_Omega", frequencies.nu, "", find_key("planet.vertical_ratio")->range}, path);
+  require_in_range({"an Omega", patch.orbital_frequency, " rad/s", scene::find_key("planet.orbital_frequency")->range},
+                   path);
+  require_in_range({"a kappa_over_Omega", frequencies.kappa, "", scene::find_key("planet.epicyclic_ratio")->range},
+                   path);
+  require_in_range({"a nu_over_Omega", frequencies.nu, "", scene::find_key("planet.vertical_ratio")->range}, path);
   require_in_range({"a time_orbits", patch.time_orbits, "", {.low = 0.0, .high = longest_run}}, path);
   if (!(std::fabs(patch.box.shear - frequencies.shear()) <= 1e-6 * frequencies.shear()))
     throw InvariantError(fmt::format("'{}' has a shear_over_Omega of {}, but its kappa_over_Omega gives {} "
@@ -54,9 +56,9 @@ void require_possible_offsets(const Patch& patch, const std::string& path) {
 
 std::string particle_fault(const Patch& patch, std::size_t k) {
   assert(k < patch.size() && patch.velocities.size() == patch.size() && patch.masses.size() == patch.size());
-  static const KeyRange radii = find_key("particles.sizes.radius")->range,
-                        densities = find_key("particles.density")->range,
-                        coordinates = {.high = find_key("box.size")->range.high},
+  static const KeyRange radii = scene::find_key("particles.sizes.radius")->range,
+                        densities = scene::find_key("particles.density")->range,
+                        coordinates = {.high = scene::find_key("box.size")->range.high},
                         speeds = {.high = 1000.0}; // m/s relative to the shear flow: ring orbits have 10 to 20 km/s
   const Vec3 &position = patch.positions[k], &velocity = patch.velocities[k];
   if (!position.allFinite() || !velocity.allFinite())
@@ -111,18 +113,18 @@ void require_possible_frame(const Patch& patch, std::size_t count, const std::st
   if (count == 0)
     throw UsageError(fmt::format("'{}' holds no particles; choose another state", path));
   require_possible_orbits(patch, path);
-  const KeyRange& sizes = find_key("box.size")->range;
+  const KeyRange& sizes = scene::find_key("box.size")->range;
   if (!sizes.contains(patch.box.size_x) || !sizes.contains(patch.box.size_y))
     throw InvariantError(fmt::format("the box of '{}' is {} m x {} m (a patch has sizes {}); take another state", path,
                                      format_number(patch.box.size_x, 4), format_number(patch.box.size_y, 4),
                                      sizes.words()));
   const double longer = std::max(patch.box.size_x, patch.box.size_y),
                shorter = std::min(patch.box.size_x, patch.box.size_y);
-  if (!(longer <= max_aspect_ratio * shorter))
-    throw InvariantError(
-        fmt::format("the box of '{}' is {} m x {} m, more than {:g} times as long as wide; take another "
-                    "state",
-                    path, format_number(patch.box.size_x, 4), format_number(patch.box.size_y, 4), max_aspect_ratio));
+  if (!(longer <= scene::max_aspect_ratio * shorter))
+    throw InvariantError(fmt::format(
+        "the box of '{}' is {} m x {} m, more than {:g} times as long as wide; take another "
+        "state",
+        path, format_number(patch.box.size_x, 4), format_number(patch.box.size_y, 4), scene::max_aspect_ratio));
   require_possible_offsets(patch, path);
 }
 
@@ -136,7 +138,7 @@ void require_possible_particles(const Patch& patch, const std::string& path) {
     if (const std::string fault = particle_fault(patch, k); !fault.empty())
       throw InvariantError(
           fmt::format("particle {} of '{}' has {}; correct it or take another state", patch.ids[k], path, fault));
-  require_no_heap(patch, "'" + path + "'");
+  cells::require_no_heap(patch, "'" + path + "'");
 }
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

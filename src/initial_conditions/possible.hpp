@@ -7,7 +7,7 @@
 
 #include <string>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 /// Returns a description such as "a radius (m) of -1 (possible is from 1e-6 to 1000000)", or an empty string if
 /// particle k is valid. Precondition: the patch has its orbital frequency.
@@ -24,4 +24,4 @@ void require_possible(const Patch& patch, const std::string& path);
 void require_possible_frame(const Patch& patch, std::size_t count, const std::string& path);
 void require_possible_particles(const Patch& patch, const std::string& path);
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

@@ -11,7 +11,7 @@
 #include <limits>
 #include <tuple>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 namespace {
 
 // In units of the smaller radius of a pair: the target gap of a push, and the gap that is sufficient at the end.
@@ -167,4 +167,4 @@ bool separate_in_ball(std::vector<Sphere>& spheres, double ball_radius, int max_
   return separation.run(max_sweeps, [](int) {});
 }
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

@@ -13,7 +13,7 @@
 #include <functional>
 #include <vector>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 /// Sorts by strips along y, a few spheres wide, so that neighbours in space are neighbours in memory.
 void sort_by_position(std::vector<Sphere>& spheres, const ShearingBox& box);
@@ -28,4 +28,4 @@ bool separate(std::vector<Sphere>& spheres, const ShearingBox& box, double offse
 /// As above, inside a ball about the origin, which contains each sphere completely at the end; heights are ignored.
 bool separate_in_ball(std::vector<Sphere>& spheres, double ball_radius, int max_sweeps);
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -20,27 +20,27 @@ struct Window {
 
 // Returns the wavelength of the summed spectra, with the error from single samples.
 Estimate length_of(const std::optional<double>& sum, std::span<const double> singles) {
-  return {sum.value_or(unknown), singles.empty() ? unknown : block_mean(singles).error};
+  return {sum.value_or(unknown), singles.empty() ? unknown : statistics::block_mean(singles).error};
 }
 
 // `before` is the last sample before the window.
 Window window_of(const SettleSample& before, std::span<const SettleSample> samples) {
   std::vector<double> rates, lengths, radial_lengths;
-  WakePower sums;
+  diagnostics::WakePower sums;
   const SettleSample* previous = &before;
   for (const SettleSample& sample : samples) {
     rates.push_back((sample.work - previous->work) / (two_pi * (sample.orbits - previous->orbits)));
     previous = &sample;
     sums += sample.waves;
-    const WakeWaves waves = wake_waves(sample.waves);
+    const diagnostics::WakeWaves waves = wake_waves(sample.waves);
     if (!waves.wavelength)
       continue;
     lengths.push_back(*waves.wavelength);
     radial_lengths.push_back(*waves.radial_wavelength);
   }
-  const WakeWaves waves = wake_waves(sums);
-  return {block_mean(rates), length_of(waves.wavelength, lengths), length_of(waves.radial_wavelength, radial_lengths),
-          waves.contrast, lengths.size()};
+  const diagnostics::WakeWaves waves = wake_waves(sums);
+  return {statistics::block_mean(rates), length_of(waves.wavelength, lengths),
+          length_of(waves.radial_wavelength, radial_lengths), waves.contrast, lengths.size()};
 }
 
 bool within(const WindowMeans& means, const MeanBounds& bounds) {
@@ -93,4 +93,4 @@ bool settled(const Settling& settling, const SettleCriterion& criterion) {
          within(settling.radial_wavelength, criterion.wavelengths) && settling.deviation <= criterion.largest_deviation;
 }
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

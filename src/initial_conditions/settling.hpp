@@ -16,7 +16,7 @@
 #include <optional>
 #include <span>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 /// The patch at one instant.
 struct SettleSample {
@@ -24,7 +24,7 @@ struct SettleSample {
   /// Work of the shear so far: (energy lost in collisions + Σ m (½c² + ½ν²z²) + potential energy) / (M S²), m². Its
   /// rate is the viscosity.
   double work = 0.0;
-  WakePower waves;
+  diagnostics::WakePower waves;
 };
 
 /// Returns the means with their tolerance: the larger of `bounds.change` and `standard_errors` of the difference.
@@ -39,4 +39,4 @@ std::optional<Settling> compare_windows(std::span<const SettleSample> history, s
 /// True if there are wakes, all means are accurate and agree, and the last sample is typical of them.
 bool settled(const Settling& settling, const SettleCriterion& criterion);
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 SizeLevels::SizeLevels(const std::vector<Sphere>& spheres, const ShearingBox& box, double offset) {
   for (const Sphere& sphere : spheres)
@@ -28,4 +28,4 @@ std::size_t SizeLevels::level_of(double radius) const {
   return static_cast<std::size_t>(std::ilogb(largest_ / radius));
 }
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 class SizeLevels {
 public:
@@ -36,11 +36,11 @@ private:
   struct Level {
     std::vector<std::uint32_t> members;
     double largest = 0.0; // radius
-    PeriodicGrid grid;
+    cells::PeriodicGrid grid;
   };
 
   double largest_ = 0.0;
   std::vector<Level> levels_;
 };
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

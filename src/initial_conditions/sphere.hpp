@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 struct Sphere {
   Vec3 position;          ///< m
@@ -18,4 +18,4 @@ struct Sphere {
   double mass() const { return held ? 1e200 : radius * radius * radius; }
 };
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <tuple>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 namespace {
 
 struct SpherePair {
@@ -79,4 +79,4 @@ void SphereNeighbours::build(const std::vector<Sphere>& spheres, std::size_t own
   });
 }
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

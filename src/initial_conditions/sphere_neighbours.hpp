@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 struct Neighbour {
   std::uint32_t sphere;
@@ -34,4 +34,4 @@ private:
   std::vector<Neighbour> entries_;
 };
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 // Visits the ranks with slabs that intersect [low, high], each once.
 template<class Visit> void SphereSlabs::visit_slabs(double low, double high, const Visit& visit) const {
@@ -73,4 +73,4 @@ void SphereSlabs::update_copies(std::vector<Sphere>& spheres) const {
   assert(copy == spheres.end());
 }
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

@@ -12,7 +12,7 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 class SphereSlabs {
 public:
@@ -41,4 +41,4 @@ private:
   std::vector<std::vector<std::uint32_t>> sent_; // indices of the spheres copied to each rank
 };
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

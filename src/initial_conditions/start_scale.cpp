@@ -13,7 +13,7 @@
 #include <limits>
 #include <vector>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 namespace {
 
 // Moments of t = (x − centre) / width of a stripe, and of the quantities q.
@@ -77,7 +77,7 @@ public:
 
   void add_particles() {
     for (std::size_t k = 0; k < patch_.size(); ++k) {
-      const Vec3 c = peculiar_velocity(patch_, k);
+      const Vec3 c = diagnostics::peculiar_velocity(patch_, k);
       const double x = (patch_.positions[k].x() / patch_.box.size_x + 0.5) * number();
       const double stripe = std::clamp(std::floor(x), 0.0, number() - 1.0);
       moments_[static_cast<std::size_t>(stripe)].add(x - stripe - 0.5, {c.x(), c.y(), c.z(), patch_.positions[k].z()});
@@ -150,9 +150,9 @@ double over(double size, double extent) {
 
 } // namespace
 
-StartScale start_scale_of(const Patch& patch, double mass, const Communicator& ranks) {
+scene::StartScale start_scale_of(const Patch& patch, double mass, const Communicator& ranks) {
   assert(patch.velocities.size() == patch.size() && patch.box.area() > 0.0);
-  StartScale start;
+  scene::StartScale start;
   start.particle_count = ranks.sum(patch.size());
   auto radii = exact_total<ExactSum>(patch.size(), [&](ExactSum& sum, std::size_t k) { sum += patch.radii[k]; });
   auto squares = exact_total<ExactSum>(patch.size(),
@@ -168,8 +168,8 @@ StartScale start_scale_of(const Patch& patch, double mass, const Communicator& r
 
   start.optical_depth = pi * squares.value() / patch.box.area();
   start.mean_radius = radii.value() / static_cast<double>(start.particle_count);
-  start.usual_dispersion = usual_dispersion(largest_radius, largest_mass, mass / patch.box.area(),
-                                            newton_g(patch.orbital_frequency), patch.frequencies.kappa);
+  start.usual_dispersion = scene::usual_dispersion(largest_radius, largest_mass, mass / patch.box.area(),
+                                                   newton_g(patch.orbital_frequency), patch.frequencies.kappa);
   start.dispersion = std::max({stripes.scatter(radial), stripes.scatter(azimuthal), stripes.scatter(vertical)});
   start.height = stripes.scatter(height);
   start.spread_x = over(patch.box.size_x, extent_x);
@@ -183,4 +183,4 @@ StartScale start_scale_of(const Patch& patch, double mass, const Communicator& r
   return start;
 }
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

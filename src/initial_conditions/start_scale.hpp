@@ -5,9 +5,9 @@
 #include <keeler/particles/patch.hpp>
 #include <keeler/scene/patch_scale.hpp>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 /// Measures a patch of this total mass, kg. Collective, for a part of the particles: result on the root only.
-StartScale start_scale_of(const Patch& patch, double mass, const Communicator& ranks);
+scene::StartScale start_scale_of(const Patch& patch, double mass, const Communicator& ranks);
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

@@ -4,7 +4,7 @@
 
 #include <cassert>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 Streamlines Streamlines::bunched(int waves, double length, double q) {
   assert(waves != 0 && length > 0.0);
@@ -35,7 +35,7 @@ Elements Streamlines::elements(double guiding_x) const {
   Elements sum{guiding_x, 0.0, 0.0, 0.0, 0.0, inclination};
   for (const EccentricityWave& wave : waves) {
     double sine, cosine;
-    sine_cosine(wave.wave_number * guiding_x + wave.phase, sine, cosine);
+    hill::sine_cosine(wave.wave_number * guiding_x + wave.phase, sine, cosine);
     sum.e_cos += wave.eccentricity * cosine;
     sum.e_sin += wave.eccentricity * sine;
   }
@@ -46,7 +46,7 @@ double Streamlines::spacing(double guiding_x) const {
   double slope = 1.0;
   for (const EccentricityWave& wave : waves) {
     double sine, cosine;
-    sine_cosine(wave.wave_number * guiding_x + wave.phase, sine, cosine);
+    hill::sine_cosine(wave.wave_number * guiding_x + wave.phase, sine, cosine);
     slope += wave.wave_number * (wave.eccentricity * sine);
   }
   return slope;
@@ -64,4 +64,4 @@ double Streamlines::guiding_x(double x) const {
   return 0.5 * (low + high);
 }
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

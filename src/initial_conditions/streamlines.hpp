@@ -13,7 +13,7 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 /// Eccentricity vectors e exp(i(kX + phase)) at time zero. Crests travel inward where k > 0, outward where k < 0.
 struct EccentricityWave {
@@ -46,4 +46,4 @@ struct Streamlines {
   double guiding_x(double x) const;
 };
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

@@ -14,20 +14,20 @@
 #include <cmath>
 #include <limits>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 namespace {
 
 void require_possible(const Patch& patch, std::size_t nx, std::size_t ny) {
   const double size_x = static_cast<double>(nx) * patch.box.size_x, size_y = static_cast<double>(ny) * patch.box.size_y;
   const double copies = static_cast<double>(nx) * static_cast<double>(ny);
-  const KeyRange &sizes = find_key("box.size")->range, &counts = find_key("particles.count")->range;
+  const KeyRange &sizes = scene::find_key("box.size")->range, &counts = scene::find_key("particles.count")->range;
   if (!sizes.contains(size_x) || !sizes.contains(size_y))
     throw UsageError(fmt::format("{} x {} copies make a box of {} m x {} m (a patch has sizes {}); use fewer", nx, ny,
                                  format_number(size_x, 4), format_number(size_y, 4), sizes.words()));
-  if (!(std::max(size_x, size_y) <= max_aspect_ratio * std::min(size_x, size_y)))
+  if (!(std::max(size_x, size_y) <= scene::max_aspect_ratio * std::min(size_x, size_y)))
     throw UsageError(fmt::format("{} x {} copies make a box of {} m x {} m, more than {:g} times as long as wide; make "
                                  "it less oblong",
-                                 nx, ny, format_number(size_x, 4), format_number(size_y, 4), max_aspect_ratio));
+                                 nx, ny, format_number(size_x, 4), format_number(size_y, 4), scene::max_aspect_ratio));
   const double count = copies * static_cast<double>(patch.size());
   if (!(count <= counts.high))
     throw UsageError(fmt::format("{} x {} copies make {} particles (the limit is {}); use fewer", nx, ny,
@@ -121,4 +121,4 @@ Patch tiled_patch(const Patch& patch, std::size_t nx, std::size_t ny) {
   return tiled.some(0, tiled.size());
 }
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

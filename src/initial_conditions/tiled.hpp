@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 /// Returns nx × ny copies of a patch, one particle for each image: the same ring at the same instant, so all distances,
 /// accelerations and relative velocities are unchanged to rounding. The box grows in proportion; its shear
@@ -33,4 +33,4 @@ private:
   std::size_t nx_, ny_;
 };
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

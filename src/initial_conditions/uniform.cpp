@@ -11,7 +11,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 namespace {
 
 // Draws an epicycle of random phase: its whole horizontal velocity, but vertically only half, as z has the other half.
@@ -110,4 +110,4 @@ Patch uniform_patch(const UniformRequest& request, const std::function<void(cons
   return patch;
 }
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

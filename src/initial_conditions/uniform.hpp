@@ -11,7 +11,7 @@
 #include <functional>
 #include <vector>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 /// A body with a given position and velocity, such as a moonlet.
 struct HeldBody {
@@ -42,7 +42,7 @@ struct UniformRequest {
   Streamlines streamlines;                              ///< of the mean motion; circles by default
   std::vector<HeldBody> held;                           ///< their ids follow the particles' ids
   std::vector<ClosedBall> closed;                       ///< contain all held bodies; must not overlap
-  DensityPattern pattern;                               ///< of the guiding centres on the streamlines
+  scene::DensityPattern pattern;                        ///< of the guiding centres on the streamlines
   std::uint64_t seed = 1;
 };
 
@@ -58,4 +58,4 @@ struct UniformRequest {
 Patch uniform_patch(const UniformRequest& request, const std::function<void(const StartProgress&)>& progress = {},
                     const Communicator& ranks = {});
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

@@ -14,7 +14,7 @@
 #include <cassert>
 #include <optional>
 
-namespace keeler {
+namespace keeler::io {
 namespace {
 
 // A field in a file.
@@ -321,4 +321,4 @@ void Checkpoint::read(const FieldTable& table) const {
   });
 }
 
-} // namespace keeler
+} // namespace keeler::io

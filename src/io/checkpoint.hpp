@@ -10,7 +10,7 @@
 #include <memory>
 #include <string>
 
-namespace keeler {
+namespace keeler::io {
 
 /// Content of a checkpoint beside the fields.
 struct CheckpointHeader {
@@ -45,4 +45,4 @@ private:
   std::unique_ptr<Parts> parts_;
 };
 
-} // namespace keeler
+} // namespace keeler::io

@@ -11,7 +11,7 @@
 #include <charconv>
 #include <optional>
 
-namespace keeler {
+namespace keeler::io {
 namespace {
 
 constexpr std::string_view prefix = "checkpoint_", ending = ".h5";
@@ -89,7 +89,7 @@ void prune_checkpoints(const std::filesystem::path& newest, std::size_t keep) {
   const auto at = static_cast<std::size_t>(std::find(files.begin(), files.end(), newest) - files.begin());
   for (std::size_t k = at + keep; k < files.size(); ++k)
     remove_file(files[k]);
-  remove_left_overs(newest.parent_path(), [](std::string_view name) { return number_of(name).has_value(); });
+  files::remove_left_overs(newest.parent_path(), [](std::string_view name) { return number_of(name).has_value(); });
 }
 
 void remove_later_checkpoints(const std::filesystem::path& newest) {
@@ -100,4 +100,4 @@ void remove_later_checkpoints(const std::filesystem::path& newest) {
   }
 }
 
-} // namespace keeler
+} // namespace keeler::io

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::io {
 
 /// Returns FOLDER/checkpoint_NNNNNN.h5. Precondition: number >= 0.
 std::filesystem::path checkpoint_path(const std::filesystem::path& folder, std::int64_t number);
@@ -29,4 +29,4 @@ void prune_checkpoints(const std::filesystem::path& newest, std::size_t keep = 2
 /// Removes the checkpoints after this one, which the resumed run rejected and will compute again.
 void remove_later_checkpoints(const std::filesystem::path& newest);
 
-} // namespace keeler
+} // namespace keeler::io

@@ -24,7 +24,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace keeler {
+namespace keeler::io {
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -221,4 +221,4 @@ void try_in_child(const std::string& what, const ChildLimits& limits, const std:
     fail(message);
 }
 
-} // namespace keeler
+} // namespace keeler::io

@@ -7,7 +7,7 @@
 #include <functional>
 #include <string>
 
-namespace keeler {
+namespace keeler::io {
 
 /// Resource limits of a child.
 struct ChildLimits {
@@ -30,4 +30,4 @@ template<class Read> auto read_after_trial(const std::string& what, const ChildL
   return read();
 }
 
-} // namespace keeler
+} // namespace keeler::io

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace keeler {
+namespace keeler::io {
 namespace {
 
 constexpr char contacts_group[] = "Contacts";
@@ -110,4 +110,4 @@ ContactFile read_contacts(const std::filesystem::path& file) {
   }
 }
 
-} // namespace keeler
+} // namespace keeler::io

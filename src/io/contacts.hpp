@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::io {
 
 /// One contact of two spheres.
 struct ContactRow {
@@ -47,4 +47,4 @@ void write_contacts(const std::filesystem::path& file, std::span<const ContactRo
 /// Reads one file. Throws IoError, also when the file is damaged or of another kind.
 ContactFile read_contacts(const std::filesystem::path& file);
 
-} // namespace keeler
+} // namespace keeler::io

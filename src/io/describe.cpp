@@ -9,7 +9,7 @@
 
 #include <cassert>
 
-namespace keeler {
+namespace keeler::io {
 
 namespace {
 
@@ -131,4 +131,4 @@ bool is_sealed(const std::filesystem::path& file) {
   return load_content(file).sealed;
 }
 
-} // namespace keeler
+} // namespace keeler::io

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::io {
 
 enum class FileKind { checkpoint, snapshot, contacts };
 
@@ -34,4 +34,4 @@ FileDescription describe_file(const std::filesystem::path& file);
 /// True if the file has a seal. Throws IoError when the seal does not match, or the file cannot be read.
 bool is_sealed(const std::filesystem::path& file);
 
-} // namespace keeler
+} // namespace keeler::io

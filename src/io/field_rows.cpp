@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-namespace keeler {
+namespace keeler::io {
 
 FieldRows::FieldRows(const Field& field, const Communicator& ranks, std::size_t max_bytes)
     : field_(field), ranks_(ranks), gathers_(field.divided && ranks.distributed()),
@@ -43,4 +43,4 @@ void FieldRows::visit(const Piece& piece) const {
   }
 }
 
-} // namespace keeler
+} // namespace keeler::io

@@ -9,7 +9,7 @@
 #include <functional>
 #include <span>
 
-namespace keeler {
+namespace keeler::io {
 
 class FieldRows {
 public:
@@ -36,4 +36,4 @@ private:
   std::size_t before_ = 0, count_; ///< rows on lower ranks, and on all ranks
 };
 
-} // namespace keeler
+} // namespace keeler::io

@@ -8,7 +8,7 @@
 
 #include <cassert>
 
-namespace keeler {
+namespace keeler::io {
 namespace {
 
 // Returns an entry for messages.
@@ -38,4 +38,4 @@ void require_version(const hdf5::Handle& object, const hdf5::Handle& writer, con
                                   version, reads, keeler, otherwise));
 }
 
-} // namespace keeler
+} // namespace keeler::io

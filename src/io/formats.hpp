@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace keeler {
+namespace keeler::io {
 
 /// Range of format versions that this program reads.
 struct FormatVersions {
@@ -32,4 +32,4 @@ inline constexpr char clumping_group[] = "Clumping"; // in snapshots of clumped 
 inline constexpr char contacts_format[] = "keeler contacts";
 inline constexpr std::int64_t contacts_version = 1;
 
-} // namespace keeler
+} // namespace keeler::io

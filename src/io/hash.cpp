@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <new>
 
-namespace keeler {
+namespace keeler::io {
 namespace {
 
 XXH3_state_t* as_state(void* state) {
@@ -39,4 +39,4 @@ std::string Hash::hex() const {
   return fmt::format("{:016x}{:016x}", digest.high64, digest.low64);
 }
 
-} // namespace keeler
+} // namespace keeler::io

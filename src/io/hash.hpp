@@ -9,7 +9,7 @@
 #include <string_view>
 #include <type_traits>
 
-namespace keeler {
+namespace keeler::io {
 
 class Hash {
 public:
@@ -36,4 +36,4 @@ private:
   std::unique_ptr<void, Free> state_;
 };
 
-} // namespace keeler
+} // namespace keeler::io

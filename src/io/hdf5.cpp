@@ -11,7 +11,7 @@
 #include <cassert>
 #include <new>
 
-namespace keeler::hdf5 {
+namespace keeler::io::hdf5 {
 
 std::string fresh_name() {
   static std::atomic<unsigned long> count{0};
@@ -306,4 +306,4 @@ void read_dataset(const Handle& dataset, hid_t type, void* into) {
     checked("read a dataset", [&] { return H5Dread(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, into); });
 }
 
-} // namespace keeler::hdf5
+} // namespace keeler::io::hdf5

@@ -15,7 +15,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace keeler::hdf5 {
+namespace keeler::io::hdf5 {
 
 /// Owns an open HDF5 object and closes it. A failure to close is ignored: by then all data has been handed to Disk,
 /// which records write failures.
@@ -133,4 +133,4 @@ template<class T> T read_attribute(const Handle& object, const std::string& name
   return value;
 }
 
-} // namespace keeler::hdf5
+} // namespace keeler::io::hdf5

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace keeler::hdf5 {
+namespace keeler::io::hdf5 {
 namespace {
 
 // Returns a type for a text: fixed length, padded with zeros, marked as ASCII when it is, as ParaView's reader needs.
@@ -116,4 +116,4 @@ std::string read_text_attribute(const Handle& object, const std::string& name) {
                    [&](hid_t memory, void* into) { return H5Aread(attribute.id(), memory, into); });
 }
 
-} // namespace keeler::hdf5
+} // namespace keeler::io::hdf5

@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace keeler::hdf5 {
+namespace keeler::io::hdf5 {
 
 /// Switches HDF5's error printing off during its lifetime.
 class Quiet {
@@ -51,4 +51,4 @@ Handle creation_list(hid_t kind);
 Layout layout_of(const Handle& type, const Handle& space);
 Handle make_space(const Shape& shape);
 
-} // namespace keeler::hdf5
+} // namespace keeler::io::hdf5

@@ -8,7 +8,7 @@
 #include <cassert>
 #include <new>
 
-namespace keeler::hdf5 {
+namespace keeler::io::hdf5 {
 namespace {
 
 // The library's handle of an open file.
@@ -164,4 +164,4 @@ Handle open_on(const std::shared_ptr<Disk>& disk) {
           H5Fclose};
 }
 
-} // namespace keeler::hdf5
+} // namespace keeler::io::hdf5

@@ -13,15 +13,17 @@
 #include <memory>
 #include <span>
 
-namespace keeler::hdf5 {
+namespace keeler::io::hdf5 {
 
 /// The storage of an HDF5 file. The driver shares its ownership while the file is open.
 class Disk {
 public:
   /// HDF5 uses the first `size` bytes of the file. Precondition: file is not null.
-  Disk(std::shared_ptr<Descriptor> file, std::uint64_t size) : file_(std::move(file)), size_(size) { assert(file_); }
+  Disk(std::shared_ptr<files::Descriptor> file, std::uint64_t size) : file_(std::move(file)), size_(size) {
+    assert(file_);
+  }
 
-  Descriptor& file() { return *file_; }
+  files::Descriptor& file() { return *file_; }
   std::uint64_t size() const { return size_; }
   /// Rethrows the first failure, if any. Nothing was written after it.
   void require_sound() const;
@@ -33,7 +35,7 @@ public:
   void resize(std::uint64_t size);
 
 private:
-  std::shared_ptr<Descriptor> file_;
+  std::shared_ptr<files::Descriptor> file_;
   std::uint64_t size_;
   std::exception_ptr failure_;
 };
@@ -46,4 +48,4 @@ void flush(const Handle& file);
 /// Opens an HDF5 file for reading.
 Handle open_on(const std::shared_ptr<Disk>& disk);
 
-} // namespace keeler::hdf5
+} // namespace keeler::io::hdf5

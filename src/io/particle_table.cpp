@@ -18,7 +18,7 @@
 #include <cassert>
 #include <iterator>
 
-namespace keeler {
+namespace keeler::io {
 
 namespace {
 
@@ -114,7 +114,7 @@ ParticleTable table_of(const std::string& file, KnownColumns columns, std::vecto
 
 ParticleTable read_text_table(std::span<const std::byte> bytes, const std::string& file) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  Columns columns = parse_columns(text, file);
+  files::Columns columns = files::parse_columns(text, file);
   if (columns.names.empty())
     throw UsageError(fmt::format("{}: the table is empty (not even columns are named); begin with a line "
                                  "\"x,y,z,vx,vy,vz,r,m\"",
@@ -175,14 +175,14 @@ std::string ParticleTable::location_of(std::size_t particle) const {
 }
 
 ParticleTable read_particle_table(const std::filesystem::path& file) {
-  const std::vector<std::byte> bytes = read_file(file);
+  const std::vector<std::byte> bytes = files::read_file(file);
   constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (!text.starts_with(signature))
     return read_text_table(bytes, file.string());
   const std::string what = fmt::format("read '{}' as HDF5", file.string());
-  if (is_being_written(file))
-    throw IoError(fmt::format("cannot {}: {}", what, being_written));
+  if (files::is_being_written(file))
+    throw IoError(fmt::format("cannot {}: {}", what, files::being_written));
   return read_after_trial(what, limits_for(bytes.size()), [&] {
     try {
       return read_hdf5_table(bytes, file.string());
@@ -195,7 +195,7 @@ ParticleTable read_particle_table(const std::filesystem::path& file) {
 void write_particle_table(const std::filesystem::path& file, const Patch& patch) {
   constexpr std::size_t piece = std::size_t{1} << 22; // bytes
   assert(patch.orbital_frequency > 0.0);
-  NewFile out(file);
+  files::NewFile out(file);
   fmt::memory_buffer text;
   const auto write_text_so_far = [&] {
     throw_if_interrupted();
@@ -220,4 +220,4 @@ void write_particle_table(const std::filesystem::path& file, const Patch& patch)
   out.keep();
 }
 
-} // namespace keeler
+} // namespace keeler::io

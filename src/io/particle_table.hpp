@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::io {
 
 /// One entry per particle, in the order of the table.
 struct ParticleTable {
@@ -38,4 +38,4 @@ ParticleTable read_particle_table(const std::filesystem::path& file);
 /// units. Complete or not at all. Throws IoError.
 void write_particle_table(const std::filesystem::path& file, const Patch& patch);
 
-} // namespace keeler
+} // namespace keeler::io

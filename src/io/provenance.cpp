@@ -13,7 +13,7 @@
 #include <ctime>
 #include <sys/utsname.h>
 
-namespace keeler {
+namespace keeler::io {
 namespace {
 
 std::string library_versions() {
@@ -81,4 +81,4 @@ Provenance read_provenance(const hdf5::Handle& object) {
   return provenance;
 }
 
-} // namespace keeler
+} // namespace keeler::io

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::io {
 
 /// Collects the provenance of this process; `arguments` is its command line. `started` is the time of this call.
 Provenance collect_provenance(const std::vector<std::string>& arguments);
@@ -15,4 +15,4 @@ Provenance collect_provenance(const std::vector<std::string>& arguments);
 /// Returns the current time, "2026-01-31T23:59:59Z".
 std::string utc_now();
 
-} // namespace keeler
+} // namespace keeler::io

@@ -5,11 +5,11 @@
 
 #include <keeler/io/provenance.hpp>
 
-namespace keeler {
+namespace keeler::io {
 
 void write_provenance(const hdf5::Handle& object, const Provenance& provenance);
 
 /// Returns all text attributes of the object.
 Provenance read_provenance(const hdf5::Handle& object);
 
-} // namespace keeler
+} // namespace keeler::io

@@ -12,7 +12,7 @@
 
 #include <fcntl.h>
 
-namespace keeler {
+namespace keeler::io {
 namespace {
 
 constexpr std::string_view mark = "KEELER-SEAL";
@@ -23,8 +23,8 @@ std::string_view as_text(std::span<const std::byte> bytes) {
 }
 
 void require_not_written(const std::filesystem::path& file) {
-  if (is_being_written(file))
-    throw IoError(fmt::format("cannot read '{}': {}", file.string(), being_written));
+  if (files::is_being_written(file))
+    throw IoError(fmt::format("cannot read '{}': {}", file.string(), files::being_written));
 }
 
 [[noreturn]] void damaged(const std::filesystem::path& file, const std::string& reason) {
@@ -42,7 +42,7 @@ void require_match(const std::filesystem::path& file, const std::string& seal, c
 }
 
 // Returns the last bytes, where a seal would be; zeros for a shorter file.
-std::string end_of(const Descriptor& descriptor) {
+std::string end_of(const files::Descriptor& descriptor) {
   const std::size_t size = descriptor.size();
   std::string end(seal_size, '\0');
   if (size >= seal_size)
@@ -50,7 +50,7 @@ std::string end_of(const Descriptor& descriptor) {
   return end;
 }
 
-std::string seal_at_end(const std::filesystem::path& file, const Descriptor& descriptor) {
+std::string seal_at_end(const std::filesystem::path& file, const files::Descriptor& descriptor) {
   std::string seal = end_of(descriptor);
   if (!seal.starts_with(mark))
     damaged(file, "its end is missing or it is not a Keeler file");
@@ -58,7 +58,7 @@ std::string seal_at_end(const std::filesystem::path& file, const Descriptor& des
 }
 
 // Hashes the first `size` bytes of a file, piece by piece.
-Hash hash_of(const std::filesystem::path& name, const Descriptor& file, std::uint64_t size) {
+Hash hash_of(const std::filesystem::path& name, const files::Descriptor& file, std::uint64_t size) {
   std::vector<std::byte> piece(std::min<std::uint64_t>(size, std::uint64_t{1} << 20));
   Hash hash;
   for (std::uint64_t offset = 0; offset < size;) {
@@ -74,17 +74,17 @@ Hash hash_of(const std::filesystem::path& name, const Descriptor& file, std::uin
 }
 
 // Opens a file for reading at any position, which a pipe or a device does not allow.
-std::shared_ptr<Descriptor> open_to_read(const std::filesystem::path& file) {
-  if (reads_once(file))
+std::shared_ptr<files::Descriptor> open_to_read(const std::filesystem::path& file) {
+  if (files::reads_once(file))
     throw IoError(fmt::format("cannot read '{}': it is a pipe or a device, and HDF5 needs random access; name a file "
                               "on a disk",
                               file.string()));
-  return std::make_shared<Descriptor>(file, O_RDONLY);
+  return std::make_shared<files::Descriptor>(file, O_RDONLY);
 }
 
 // Refuses a stream before it is opened: a pipe would wait for its reader.
 std::filesystem::path file_for_hdf5(const std::filesystem::path& file) {
-  refuse_stream(file, "HDF5");
+  files::refuse_stream(file, "HDF5");
   return file;
 }
 
@@ -125,7 +125,7 @@ void SealedFile::finish() {
 }
 
 hdf5::Handle open_sealed(const std::filesystem::path& file) {
-  const std::shared_ptr<Descriptor> opened = open_to_read(file);
+  const std::shared_ptr<files::Descriptor> opened = open_to_read(file);
   const std::string seal = seal_at_end(file, *opened);
   const std::size_t content = opened->size() - seal_size;
   require_match(file, seal, seal_of(content, hash_of(file, *opened, content)));
@@ -136,7 +136,7 @@ bool has_seal(const std::filesystem::path& file) {
   try {
     return end_of(*open_to_read(file)).starts_with(mark);
   } catch (const IoError&) {
-    if (reads_once(file))
+    if (files::reads_once(file))
       throw;
     return false; // reading the file will report why
   }
@@ -147,13 +147,13 @@ std::string seal_in(const std::filesystem::path& file) {
 }
 
 hdf5::Handle open_sealed(const std::filesystem::path& file, const std::string& seal) {
-  const std::shared_ptr<Descriptor> opened = open_to_read(file);
+  const std::shared_ptr<files::Descriptor> opened = open_to_read(file);
   require_match(file, seal_at_end(file, *opened), seal);
   return hdf5::open_on(std::make_shared<hdf5::Disk>(opened, opened->size() - seal_size));
 }
 
 FileContent load_content(const std::filesystem::path& file) {
-  FileContent content{read_file(file), false};
+  FileContent content{files::read_file(file), false};
   const std::size_t size = content.bytes.size();
   if (size < seal_size || !as_text(std::span(content.bytes).last(seal_size)).starts_with(mark)) {
     require_not_written(file); // it may be incomplete
@@ -182,4 +182,4 @@ hdf5::Handle open_unsealed(const std::filesystem::path& file, const std::vector<
   }
 }
 
-} // namespace keeler
+} // namespace keeler::io

@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::io {
 
 /// Returns the seal to append to `content`.
 std::string seal_of(std::span<const std::byte> content);
@@ -37,7 +37,7 @@ public:
 
 private:
   std::filesystem::path name_;
-  NewFile unfinished_;
+  files::NewFile unfinished_;
   std::shared_ptr<hdf5::Disk> disk_;
   std::optional<hdf5::Handle> root_;
 };
@@ -76,4 +76,4 @@ template<class Read> auto read_content(const std::filesystem::path& file, const 
                           [&] { return read(open_unsealed(file, content.bytes)); });
 }
 
-} // namespace keeler
+} // namespace keeler::io

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <fcntl.h>
 
-namespace keeler {
+namespace keeler::io {
 namespace {
 
 std::string header_line(const std::vector<std::string>& columns) {
@@ -89,8 +89,8 @@ std::vector<std::string_view> fields_of(std::string_view row) {
 }
 
 // Opens a file with `rows` that was just written; writes them again if it was removed since.
-Descriptor open_with(const std::filesystem::path& file, std::string_view rows) {
-  Descriptor opened(file, O_RDWR | O_APPEND | O_CREAT | O_NOFOLLOW);
+files::Descriptor open_with(const std::filesystem::path& file, std::string_view rows) {
+  files::Descriptor opened(file, O_RDWR | O_APPEND | O_CREAT | O_NOFOLLOW);
   if (opened.size() == 0)
     opened.append_whole(std::as_bytes(std::span(rows)));
   return opened;
@@ -126,7 +126,7 @@ void require_rising_times(const SeriesTable& table, const std::filesystem::path&
 } // namespace
 
 SeriesTable read_series(const std::filesystem::path& file) {
-  const std::string text = read_lines(file);
+  const std::string text = files::read_lines(file);
   SeriesTable table;
   std::size_t line = 0;
   for (std::size_t begin = 0, end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
@@ -160,7 +160,7 @@ std::vector<std::string> series_names(const std::filesystem::path& file) {
   std::error_code unknown;
   if (!std::filesystem::exists(file, unknown))
     return {};
-  const std::string text = read_lines(file);
+  const std::string text = files::read_lines(file);
   const std::vector<std::string_view> fields = fields_of(std::string_view(text).substr(0, text.find('\n')));
   if (fields.front() != "step")
     return {};
@@ -172,7 +172,7 @@ Series::Series(const std::filesystem::path& file, std::size_t columns, std::stri
 
 Series Series::begin(const std::filesystem::path& file, const std::vector<std::string>& columns) {
   const std::string header = header_line(columns);
-  write_text(file, header);
+  files::write_text(file, header);
   return {file, columns.size(), header};
 }
 
@@ -180,8 +180,8 @@ Series Series::resume(const std::filesystem::path& file, const std::vector<std::
                       std::int64_t last_step, std::optional<std::int64_t> every) {
   std::error_code unknown;
   if (!std::filesystem::exists(file, unknown))
-    write_text(file, header_line(columns));
-  const std::string text = read_lines(file), header = header_line(columns);
+    files::write_text(file, header_line(columns));
+  const std::string text = files::read_lines(file), header = header_line(columns);
   if (!text.starts_with(header))
     throw IoError(
         fmt::format("cannot continue '{}': its first line is not the names of its columns ({}); repair it, or "
@@ -190,7 +190,7 @@ Series Series::resume(const std::filesystem::path& file, const std::vector<std::
   RowReader rows(file, text, columns.size(), every);
   const std::string_view kept = rows.rows_up_to(last_step);
   if (std::filesystem::file_size(file, unknown) != kept.size())
-    write_text(file, kept);
+    files::write_text(file, kept);
   Series series(file, columns.size(), kept);
   series.gaps_ = rows.gaps();
   return series;
@@ -220,9 +220,9 @@ void Series::require_rows() {
                               "so rows may be lost; restore the missing rows, then resume the run",
                               path_.string(), size, size_));
   const std::string rows = file_.read_all();
-  write_text(path_, rows);
+  files::write_text(path_, rows);
   file_ = open_with(path_, rows);
   restored_ = true;
 }
 
-} // namespace keeler
+} // namespace keeler::io

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace keeler {
+namespace keeler::io {
 
 /// A series that was read.
 struct SeriesTable {
@@ -71,11 +71,11 @@ private:
   void require_rows();
 
   std::filesystem::path path_;
-  Descriptor file_;
+  files::Descriptor file_;
   std::size_t columns_; // without the step
   std::size_t size_;    // of the file after the last row, bytes
   bool restored_ = false;
   std::vector<SeriesGap> gaps_;
 };
 
-} // namespace keeler
+} // namespace keeler::io

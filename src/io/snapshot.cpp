@@ -16,7 +16,7 @@
 #include <cmath>
 #include <optional>
 
-namespace keeler {
+namespace keeler::io {
 
 namespace {
 
@@ -236,4 +236,4 @@ std::string snapshot_seal(const std::filesystem::path& file) {
   return seal.substr(0, seal.find_last_not_of(" \n") + 1);
 }
 
-} // namespace keeler
+} // namespace keeler::io

@@ -11,7 +11,7 @@
 #include <cassert>
 #include <optional>
 
-namespace keeler {
+namespace keeler::io {
 namespace {
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double), "arrays of vectors are written as (N, 3) doubles");
@@ -231,4 +231,4 @@ void write_snapshot(const std::filesystem::path& file, const Patch& patch, const
   snapshot.finish();
 }
 
-} // namespace keeler
+} // namespace keeler::io

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <vector>
 
-namespace keeler {
+namespace keeler::io {
 namespace {
 
 class Header {
@@ -65,4 +65,4 @@ void require_header_fits(const hdf5::Handle& root, const Patch& patch, std::size
     header.require("Time", hdf5::read_attribute<double>(ring, "time_s"), "time_s of /RingBox; correct one of them");
 }
 
-} // namespace keeler
+} // namespace keeler::io

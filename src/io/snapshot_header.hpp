@@ -7,10 +7,10 @@
 
 #include <cstddef>
 
-namespace keeler {
+namespace keeler::io {
 
 /// Throws IoError naming the attribute when /Header states that the file is one of several, a number of particles other
 /// than `count`, a mass per type, or a box or time other than in `patch`. Missing attributes are accepted.
 void require_header_fits(const hdf5::Handle& root, const Patch& patch, std::size_t count);
 
-} // namespace keeler
+} // namespace keeler::io

@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-namespace keeler {
+namespace keeler::io {
 namespace {
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
@@ -224,4 +224,4 @@ void require_whole_ids(const hdf5::Handle& dataset, const std::string& name) {
                               name, *odd, odd - ids.begin()));
 }
 
-} // namespace keeler
+} // namespace keeler::io

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-namespace keeler {
+namespace keeler::io {
 
 /// Throws IoError when an attribute of a group or dataset, called `name` in messages, states a unit other than `unit`,
 /// or a scale or an offset. Names of attributes are matched by letters and digits, without case. Without such an
@@ -24,4 +24,4 @@ void require_none_missing(const hdf5::Handle& dataset, const std::string& name, 
 /// Throws IoError when a dataset of ids has one that is not a whole number >= 0.
 void require_whole_ids(const hdf5::Handle& dataset, const std::string& name);
 
-} // namespace keeler
+} // namespace keeler::io

@@ -11,7 +11,7 @@
 #include <numeric>
 #include <span>
 
-namespace keeler {
+namespace keeler::io {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "the files declare LittleEndian");
@@ -35,7 +35,7 @@ public:
                        type, name, components, offset, label);
   }
 
-  void write(NewFile& out) const {
+  void write(files::NewFile& out) const {
     for (const std::span<const std::byte> array : arrays_) {
       const std::uint64_t length = array.size();
       out.write(std::as_bytes(std::span(&length, 1)));
@@ -54,7 +54,7 @@ std::vector<Vec3> in_si(std::vector<Vec3> rates, double orbital_frequency) {
   return rates;
 }
 
-void write_text(NewFile& out, std::string_view text) {
+void write_text(files::NewFile& out, std::string_view text) {
   out.write(std::as_bytes(std::span(text)));
 }
 
@@ -89,7 +89,7 @@ void write_vtp(const std::filesystem::path& file, const Patch& patch) {
   xml += arrays.add("Int64", "offsets", 1, "", ends);
   xml += "</Verts>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
 
-  NewFile out(file);
+  files::NewFile out(file);
   write_text(out, xml);
   arrays.write(out);
   write_text(out, "\n</AppendedData>\n</VTKFile>\n");
@@ -101,7 +101,7 @@ void write_pvd(const std::filesystem::path& file, const std::vector<VtpInstant>&
                     "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n";
   for (const VtpInstant& instant : instants)
     xml += fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", instant.time_orbits, instant.file);
-  keeler::write_text(file, xml + "</Collection>\n</VTKFile>\n");
+  files::write_text(file, xml + "</Collection>\n</VTKFile>\n");
 }
 
-} // namespace keeler
+} // namespace keeler::io

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::io {
 
 /// Writes one vertex per particle, in the order of ids, with the arrays of a snapshot in SI: Velocities, Masses,
 /// ParticleIDs, Radius and, for rough particles, Spins. TimeValue is the time in orbits. Complete or not at all. Throws
@@ -23,4 +23,4 @@ struct VtpInstant {
 /// Writes the collection. Complete or not at all. Throws IoError.
 void write_pvd(const std::filesystem::path& file, const std::vector<VtpInstant>& instants);
 
-} // namespace keeler
+} // namespace keeler::io

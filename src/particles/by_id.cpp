@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::particles {
 namespace {
 
 template<class Row> std::vector<Row> rows_at(const std::vector<Row>& rows, std::span<const std::uint32_t> indices) {
@@ -103,4 +103,4 @@ void visit_by_id(const Particles& local, const Communicator& ranks, std::size_t 
   }
 }
 
-} // namespace keeler
+} // namespace keeler::particles

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace keeler {
+namespace keeler::particles {
 
 /// Calls piece(particles) on the root rank for the particles of all ranks, `rows` at a time (fewer in the last piece).
 /// Its exceptions are thrown on all ranks. No rank holds more than its local particles and one piece. Collective.
@@ -15,4 +15,4 @@ namespace keeler {
 void visit_by_id(const Particles& local, const Communicator& ranks, std::size_t rows,
                  const std::function<void(const Particles&)>& piece);
 
-} // namespace keeler
+} // namespace keeler::particles

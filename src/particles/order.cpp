@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace keeler {
+namespace keeler::particles {
 
 // A counting sort into bins of ids, at most twice as many as particles, and then a sort within each bin. Ids are
 // usually consecutive, and then each bin has one particle.
@@ -29,4 +29,4 @@ std::vector<std::uint32_t> order_by_id(std::span<const std::uint64_t> ids) {
   return order;
 }
 
-} // namespace keeler
+} // namespace keeler::particles

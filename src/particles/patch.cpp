@@ -9,7 +9,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::particles {
 
 Patch make_patch(const Particles& particles, const ShearingBox& box, double offset, const Frequencies& frequencies,
                  double after) {
@@ -81,4 +81,4 @@ Particles particles_from(const Patch& patch, double ahead) {
   return particles;
 }
 
-} // namespace keeler
+} // namespace keeler::particles

@@ -11,7 +11,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::particles {
 namespace {
 
 // Returns ∫ r^p dr from a to b.
@@ -277,4 +277,4 @@ const std::vector<SizeEntry>& size_laws() {
   return registered_size_laws().entries();
 }
 
-} // namespace keeler
+} // namespace keeler::particles

@@ -2,7 +2,7 @@
 
 #include <keeler/core/registry.hpp>
 
-namespace keeler {
+namespace keeler::particles {
 namespace {
 
 Registry<StartEntry>& registered_starts() {
@@ -20,4 +20,4 @@ const std::vector<StartEntry>& start_laws() {
   return registered_starts().entries();
 }
 
-} // namespace keeler
+} // namespace keeler::particles

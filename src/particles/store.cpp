@@ -2,7 +2,7 @@
 
 #include <keeler/core/field_table.hpp>
 
-namespace keeler {
+namespace keeler::particles {
 
 void Particles::list_fields(FieldTable& table) {
   table.particle_rows<double>("bodies", bodies, "m, kg", "X, Y, e cos, e sin, i sin, i cos at the epoch; radius; mass");
@@ -12,4 +12,4 @@ void Particles::list_fields(FieldTable& table) {
                                 "angular velocity against the stars, in Hill's frame at the epoch");
 }
 
-} // namespace keeler
+} // namespace keeler::particles

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::plot {
 namespace {
 
 constexpr double tick_length = 0.4, tick_width = 0.085, label_gap = 0.4, longest_word = 14.0; // sizes of the text
@@ -117,4 +117,4 @@ void PlotFrame::draw_left(Page& page) const {
               y_.label, {look_.text, look_.theme.ink, Align::centre}, true);
 }
 
-} // namespace keeler
+} // namespace keeler::plot

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::plot {
 
 struct PlotAxis {
   std::string label = {};
@@ -58,4 +58,4 @@ private:
   std::vector<Tick> x_ticks_, y_ticks_;
 };
 
-} // namespace keeler
+} // namespace keeler::plot

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-namespace keeler {
+namespace keeler::plot {
 
 struct Colour {
   double r = 0, g = 0, b = 0;
@@ -35,4 +35,4 @@ struct Theme {
 inline constexpr Theme dark_theme{page_colour, ink, faint_ink};
 inline constexpr Theme light_theme{{1.0, 1.0, 1.0}, {0.10, 0.10, 0.12}, {0.36, 0.36, 0.38}};
 
-} // namespace keeler
+} // namespace keeler::plot

@@ -8,7 +8,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::plot {
 namespace {
 
 // Colours that stay distinct in the common kinds of colour blindness (M. Okabe and K. Ito, 2008), on white and on
@@ -270,8 +270,8 @@ std::vector<std::byte> figure_bytes(const Figure& asked, PageFormat format, doub
 }
 
 void save_figures(const Figure& figure, const std::filesystem::path& folder, const std::string& name) {
-  write_file(folder / (name + ".svg"), figure_bytes(figure, PageFormat::svg));
-  write_file(folder / (name + ".png"), figure_bytes(figure, PageFormat::png, 2.0));
+  files::write_file(folder / (name + ".svg"), figure_bytes(figure, PageFormat::svg));
+  files::write_file(folder / (name + ".png"), figure_bytes(figure, PageFormat::png, 2.0));
 }
 
-} // namespace keeler
+} // namespace keeler::plot

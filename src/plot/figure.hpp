@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::plot {
 
 struct PlotPoint {
   double x = 0.0, y = 0.0;
@@ -49,4 +49,4 @@ std::vector<std::byte> figure_bytes(const Figure& figure, PageFormat format, dou
 /// Writes NAME.svg, and NAME.png with two pixels a unit. Throws IoError.
 void save_figures(const Figure& figure, const std::filesystem::path& folder, const std::string& name);
 
-} // namespace keeler
+} // namespace keeler::plot

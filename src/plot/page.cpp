@@ -16,7 +16,7 @@
 #include <cstdint>
 #include <new>
 
-namespace keeler {
+namespace keeler::plot {
 namespace {
 
 void set_colour(cairo_t* cairo, const Colour& colour, double opacity = 1.0) {
@@ -68,7 +68,7 @@ std::vector<std::byte> described(const std::vector<std::byte>& svg, const std::v
     all.erase(at, all.find('"', at + name.size()) + 1 - at);
   std::string description = "\n<desc>\n";
   for (const std::string& text : texts)
-    description += html_text(text) + "\n";
+    description += report::html_text(text) + "\n";
   all.insert(all.find('>') + 1, description + "</desc>");
   const auto* begin = reinterpret_cast<const std::byte*>(all.data());
   return {begin, begin + all.size()};
@@ -261,7 +261,7 @@ std::vector<std::byte> Page::file_bytes() {
 }
 
 void Page::save(const std::string& path) {
-  write_file(path, file_bytes());
+  files::write_file(path, file_bytes());
 }
 
-} // namespace keeler
+} // namespace keeler::plot

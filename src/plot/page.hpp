@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::plot {
 
 enum class PageFormat { png, svg, pdf };
 
@@ -84,4 +84,4 @@ private:
   cairo_t* cairo_;
 };
 
-} // namespace keeler
+} // namespace keeler::plot

@@ -6,7 +6,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::plot {
 namespace {
 
 // Numbers outside 10^least to 10^most are written with a power of ten.
@@ -94,4 +94,4 @@ std::vector<Tick> ticks_of(const AxisRange& range, bool log, double most) {
   return readable || !log ? ticks : linear_ticks(range, most); // a short piece of a decade
 }
 
-} // namespace keeler
+} // namespace keeler::plot

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::plot {
 
 /// Returns the largest of 1, 2 and 5 times powers of ten that is at most `value` > 0; round_above(): the smallest that
 /// is at least `value`.
@@ -32,4 +32,4 @@ struct Tick {
 /// low < high; 0 < low if `log`; most > 0.
 std::vector<Tick> ticks_of(const AxisRange& range, bool log, double most);
 
-} // namespace keeler
+} // namespace keeler::plot

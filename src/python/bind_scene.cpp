@@ -21,13 +21,13 @@ using CFunction = double (*)(double speed, double radius_low, double radius_high
 void add_c_function(const std::string& name, std::uintptr_t address) {
   assert(address != 0);
   const auto function = reinterpret_cast<CFunction>(address); // NOLINT(performance-no-int-to-ptr): ctypes gives numbers
-  add_own_restitution(
+  collision::add_own_restitution(
       name, [function](const Impact& impact) { return function(impact.speed, impact.radius_low, impact.radius_high); });
 }
 
 std::vector<std::string> remarks(const Scene& scene) {
   std::vector<std::string> lines = scene.notices;
-  for (const std::string& warning : warnings(scene))
+  for (const std::string& warning : advice::warnings(scene))
     lines.push_back(warning);
   return lines;
 }
@@ -47,7 +47,7 @@ void bind_scene(py::module_& module) {
       .def_property_readonly("kick_interval", &Scene::kick_interval)
       .def_property_readonly(
           "end", [](const Scene& scene) { return static_cast<double>(scene.time.end_step) * scene.time.step; });
-  module.def("stored_scene", &parse_stored_scene, py::arg("text"), py::arg("name"));
+  module.def("stored_scene", &scene::parse_stored_scene, py::arg("text"), py::arg("name"));
   module.def("add_restitution_law", &add_c_function, py::arg("name"), py::arg("address"));
 }
 

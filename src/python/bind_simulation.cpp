@@ -37,7 +37,7 @@ template<class Make> std::unique_ptr<Held> from_patch(const Scene& scene, const 
   Scene decided;
   auto simulation = make_interruptibly([&] {
     const Patch patch = start();
-    decided = decided_by(scene, scale_of(patch));
+    decided = decided_by(scene, initial_conditions::scale_of(patch));
     return std::make_unique<Simulation>(decided, patch);
   });
   return std::make_unique<Held>(decided, std::move(simulation));
@@ -46,16 +46,16 @@ template<class Make> std::unique_ptr<Held> from_patch(const Scene& scene, const 
 std::unique_ptr<Held> from_scene(const Scene& scene) {
   return from_patch(scene, [&] {
     if (!scene.start_from)
-      require_memory_for(scene, scene.particles.count);
+      advice::require_memory_for(scene, scene.particles.count);
     return initial_patch(scene);
   });
 }
 
 std::unique_ptr<Held> from_snapshot(const PythonSnapshot& snapshot, const std::string& name, const Scene& scene) {
-  return from_patch(scene, [&] { return patch_from_snapshot(snapshot.patch, name, scene); });
+  return from_patch(scene, [&] { return initial_conditions::patch_from_snapshot(snapshot.patch, name, scene); });
 }
 
-std::unique_ptr<Held> from_stored(StoredRun stored) {
+std::unique_ptr<Held> from_stored(runs::StoredRun stored) {
   auto simulation =
       make_interruptibly([&] { return std::make_unique<Simulation>(stored.scene, std::move(stored.state)); });
   return std::make_unique<Held>(stored.scene, std::move(simulation));
@@ -63,7 +63,8 @@ std::unique_ptr<Held> from_stored(StoredRun stored) {
 
 // Loads the newest checkpoint; calls `notice` with each note.
 std::unique_ptr<Held> resume(const std::filesystem::path& folder, const py::function& notice) {
-  return from_stored(load_newest_checkpoint(folder, [&](const std::string& line) { notice(printable_line(line)); }));
+  return from_stored(
+      runs::load_newest_checkpoint(folder, [&](const std::string& line) { notice(printable_line(line)); }));
 }
 
 // --- strided views of the bodies in memory
@@ -93,7 +94,7 @@ py::array ids(const Held& held) {
 
 // Returns positions (m) and velocities (m/s).
 std::pair<py::array, py::array> motion(const Held& held) {
-  const SimulationState& state = held.state();
+  const simulation::SimulationState& state = held.state();
   const std::size_t count = state.particles.size();
   py::array_t<double> positions({static_cast<py::ssize_t>(count), py::ssize_t{3}});
   py::array_t<double> velocities({static_cast<py::ssize_t>(count), py::ssize_t{3}});
@@ -112,10 +113,10 @@ std::pair<py::array, py::array> motion(const Held& held) {
 
 // Returns inertial spins in components of Hill's frame at the current time, rad/s; None for smooth particles.
 py::object spins(const Held& held) {
-  const SimulationState& state = held.state();
+  const simulation::SimulationState& state = held.state();
   if (!state.particles.rough)
     return py::none();
-  const SpinTurn turn(held.simulation().time_at_break());
+  const particles::SpinTurn turn(held.simulation().time_at_break());
   assert(state.particles.spins.size() == state.particles.size());
   std::vector<Vec3> now(state.particles.size());
   for (std::size_t k = 0; k < now.size(); ++k)
@@ -132,7 +133,7 @@ double orbits(const Held& held) {
 PythonSnapshot snapshot(const Held& held) {
   require_own_threads();
   Patch patch = held.simulation().patch_at_break();
-  if (held.broken() && keep_possible(patch) > 0 && patch.size() == 0)
+  if (held.broken() && initial_conditions::keep_possible(patch) > 0 && patch.size() == 0)
     throw Error(ExitCode::run_time, "no particle of this broken simulation is valid in a snapshot; use its arrays");
   return {std::move(patch), held.scene().resolved};
 }
@@ -149,7 +150,7 @@ void change_spins(Particles& particles, const Doubles& spins, const py::object& 
     throw UsageError("spins are given, but the particles of this scene are smooth; leave spins None, or add "
                      "[collisions.friction] to the scene");
   const auto old = before.cast<Doubles>();
-  const SpinTurn turn(after);
+  const particles::SpinTurn turn(after);
   const std::vector<Vec3> rows = vectors_from(spins, particles.size(), "spins", 1.0 / omega);
   for (std::size_t k = 0; k < rows.size(); ++k)
     if (!same_bits(spins.data() + 3 * k, old.data() + 3 * k))
@@ -158,18 +159,18 @@ void change_spins(Particles& particles, const Doubles& spins, const py::object& 
 
 // Throws InvariantError if the changed particles would not be valid in an initial state.
 void require_possible_change(const Held& held, const Particles& particles) {
-  const SimulationState& state = held.state();
+  const simulation::SimulationState& state = held.state();
   Patch patch = make_patch(particles, state.box, held.simulation().boundary().offset, held.scene().planet.frequencies,
                            -0.5 * state.step_length);
   patch.orbital_frequency = held.scene().planet.orbital_frequency;
-  require_possible_particles(patch, "the changed state");
+  initial_conditions::require_possible_particles(patch, "the changed state");
 }
 
 // Replaces the particles by arrays in memory order. Only particles with a changed position or velocity get new
 // elements: the conversion to Cartesian form and back loses a bit or two.
 void replace(Held& held, const Doubles& positions, const Doubles& velocities, const Doubles& radii,
              const Doubles& masses, const std::optional<Doubles>& changed_spins) {
-  const SimulationState& state = held.whole_state();
+  const simulation::SimulationState& state = held.whole_state();
   const std::size_t count = state.particles.size();
   const Frequencies& frequencies = held.scene().planet.frequencies;
   const double omega = held.scene().planet.orbital_frequency;
@@ -188,7 +189,8 @@ void replace(Held& held, const Doubles& positions, const Doubles& velocities, co
     if (!moved && same_bits(v, before_v.data() + 3 * k))
       continue;
     const State at{Vec3(x[0], x[1], x[2]), Vec3(v[0], v[1], v[2]) / omega};
-    if (const std::string fault = moved ? box_fault(at, state.box, frequencies) : ""; !fault.empty())
+    if (const std::string fault = moved ? initial_conditions::box_fault(at, state.box, frequencies) : "";
+        !fault.empty())
       throw InvariantError(
           fmt::format("particle {} of the changed state has {}; correct it", state.particles.ids[k], fault));
     body.elements = elements_from(at, frequencies, rotation);
@@ -206,11 +208,11 @@ py::array contacts(Held& held) {
 }
 
 void save(const Held& held, const std::filesystem::path& file) {
-  store_checkpoint(file, held.whole_state(), held.scene());
+  runs::store_checkpoint(file, held.whole_state(), held.scene());
 }
 
 py::dict counts(const Held& held) {
-  const SimulationState& state = held.state();
+  const simulation::SimulationState& state = held.state();
   py::dict numbers;
   numbers["collisions"] = state.collisions.fast;
   numbers["slow_contacts"] = state.collisions.slow;
@@ -226,7 +228,7 @@ void bind_simulation(py::module_& module) {
   py::class_<Held>(module, "Simulation")
       .def(py::init(&from_scene), py::arg("scene"))
       .def(py::init(&from_snapshot), py::arg("snapshot"), py::arg("name"), py::arg("scene"))
-      .def_static("load", [](const std::filesystem::path& file) { return from_stored(load_checkpoint(file)); })
+      .def_static("load", [](const std::filesystem::path& file) { return from_stored(runs::load_checkpoint(file)); })
       .def_static("resume", &resume, py::arg("folder"), py::arg("notice"))
       .def("__len__", [](const Held& held) { return held.state().particles.size(); })
       .def_property_readonly("scene", &Held::scene, py::return_value_policy::reference_internal)
@@ -241,7 +243,7 @@ void bind_simulation(py::module_& module) {
       .def_property_readonly("state_hash",
                              [](const Held& held) {
                                require_own_threads();
-                               return state_hash(held.whole_state(), held.scene());
+                               return runs::state_hash(held.whole_state(), held.scene());
                              })
       .def("advance", &Held::advance, py::arg("until_tick"))
       .def("elements", &elements)

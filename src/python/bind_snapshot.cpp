@@ -39,8 +39,8 @@ namespace fs = std::filesystem;
 PythonSnapshot read(const fs::path& file, bool is_a_start) {
   require_own_threads();
   const Unlocked unlocked;
-  Snapshot snapshot = read_snapshot(file);
-  require_possible(snapshot.patch, file.string());
+  io::Snapshot snapshot = io::read_snapshot(file);
+  initial_conditions::require_possible(snapshot.patch, file.string());
   return {std::move(snapshot.patch), std::move(snapshot.meta.scene), is_a_start};
 }
 
@@ -51,13 +51,13 @@ void write(const PythonSnapshot& snapshot, const fs::path& file, bool as_it_is) 
   const std::string scene = snapshot.is_a_start && !as_it_is
                                 ? parse_scene(snapshot.scene, file.string(), {}, file.string()).resolved
                                 : snapshot.scene;
-  write_snapshot(file, snapshot.patch, {scene, collect_provenance({})});
+  io::write_snapshot(file, snapshot.patch, {scene, io::collect_provenance({})});
 }
 
 PythonSnapshot generate(const Scene& scene, bool clumped) {
   return make_interruptibly([&] {
-    Patch patch = clumped ? clumped_state(scene).patch : initial_patch(scene);
-    const Scene decided = decided_by(scene, scale_of(patch));
+    Patch patch = clumped ? initial_conditions::clumped_state(scene).patch : initial_patch(scene);
+    const Scene decided = decided_by(scene, initial_conditions::scale_of(patch));
     return PythonSnapshot{std::move(patch), decided.resolved};
   });
 }
@@ -66,16 +66,16 @@ PythonSnapshot generate(const Scene& scene, bool clumped) {
 PythonSnapshot tile(const PythonSnapshot& snapshot, std::size_t nx, std::size_t ny, const std::string& name) {
   return make_interruptibly([&] {
     const Scene scene = parse_scene(snapshot.scene, name, {"start.keep=1.0"}, name);
-    const Patch patch = patch_from_snapshot(snapshot.patch, name, scene);
-    require_no_overlap(patch, "'" + name + "'");
-    return PythonSnapshot{tiled_patch(patch, nx, ny), scene.resolved, true};
+    const Patch patch = initial_conditions::patch_from_snapshot(snapshot.patch, name, scene);
+    cells::require_no_overlap(patch, "'" + name + "'");
+    return PythonSnapshot{initial_conditions::tiled_patch(patch, nx, ny), scene.resolved, true};
   });
 }
 
 PythonSnapshot from_arrays(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
                            const Doubles& positions, const std::optional<Doubles>& velocities, const Doubles& radii,
                            const std::optional<Doubles>& masses, const std::optional<Doubles>& spins, bool relaxed) {
-  ParticleTable table;
+  io::ParticleTable table;
   table.file = "the arrays";
   const auto count = positions.ndim() > 0 ? static_cast<std::size_t>(positions.shape(0)) : 0;
   if (count == 0)
@@ -89,38 +89,39 @@ PythonSnapshot from_arrays(const std::string& text, const std::string& name, con
   if (spins)
     table.spins = vectors_from(*spins, count, "spins");
   return make_interruptibly([&] {
-    const TableScene of = parse_table_scene(text, name, overrides);
-    Patch patch = patch_from_table(table, of);
+    const scene::TableScene of = scene::parse_table_scene(text, name, overrides);
+    Patch patch = initial_conditions::patch_from_table(table, of);
     if (relaxed)
-      relax(patch);
-    require_no_overlap(patch, table.file);
-    const Scene scene = decided_by(parse_scene(of.scene.resolved, name, {}, table.file), scale_of(patch));
+      initial_conditions::relax(patch);
+    cells::require_no_overlap(patch, table.file);
+    const Scene scene =
+        decided_by(parse_scene(of.scene.resolved, name, {}, table.file), initial_conditions::scale_of(patch));
     return PythonSnapshot{std::move(patch), scene.resolved, true};
   });
 }
 
 // Returns the numbers and their descriptions; the Python package combines them into a mapping.
-py::object numbers_of(const Record& record) {
+py::object numbers_of(const quantities::Record& record) {
   return py::make_tuple(as_python(json_of(record)), described(quantities_of(record)));
 }
 
 py::object analyze_snapshot(const PythonSnapshot& snapshot) {
   return numbers_of(make_interruptibly([&] {
-    const TransportReport transport =
-        TransportReport::of_snapshot(snapshot.patch, parse_stored_scene(snapshot.scene, "snapshot").gravity);
+    const runs::TransportReport transport = runs::TransportReport::of_snapshot(
+        snapshot.patch, scene::parse_stored_scene(snapshot.scene, "snapshot").gravity);
     return record_of(measure({&snapshot.patch, 1}, transport));
   }));
 }
 
 py::object analyze_path(const fs::path& path, const std::optional<double>& since, const std::optional<double>& until) {
   return numbers_of(make_interruptibly([&] {
-    const MeasuredPart part = measured_part(path, {since, until});
+    const runs::MeasuredPart part = runs::measured_part(path, {since, until});
     return record_of(measure(part.stored.patches, part.transport));
   }));
 }
 
 py::dict series(const fs::path& file) {
-  const SeriesTable table = read_series(file);
+  const io::SeriesTable table = io::read_series(file);
   assert(table.names.size() == table.columns.size());
   py::dict columns;
   for (std::size_t c = 0; c < table.names.size(); ++c) {
@@ -133,7 +134,7 @@ py::dict series(const fs::path& file) {
 void render(const PythonSnapshot& snapshot, const fs::path& file, const std::string& title, int width) {
   require_own_threads();
   const Unlocked unlocked;
-  PictureOptions options;
+  render::PictureOptions options;
   options.title = title;
   options.width = width;
   render_patch(snapshot.patch, file.string(), options);
@@ -142,7 +143,7 @@ void render(const PythonSnapshot& snapshot, const fs::path& file, const std::str
 void write_bytes(const fs::path& file, const std::string& content) {
   require_own_threads();
   const Unlocked unlocked;
-  write_text(file, content);
+  files::write_text(file, content);
 }
 
 py::object array_or_none(const std::vector<Vec3>& rows, double factor) {
@@ -170,7 +171,7 @@ void bind_snapshot(py::module_& module) {
       .def_readonly("scene", &PythonSnapshot::scene)
       .def_readonly("is_a_start", &PythonSnapshot::is_a_start)
       .def("save", &write, py::arg("file"), py::arg("as_it_is") = false)
-      .def("start_doubts", [](Self self) { return warnings(scale_of(self.patch).start); })
+      .def("start_doubts", [](Self self) { return advice::warnings(initial_conditions::scale_of(self.patch).start); })
       .def("analyze", &analyze_snapshot)
       .def("tile", &tile, py::arg("nx"), py::arg("ny"), py::arg("name"))
       .def("render", &render, py::arg("file"), py::arg("title"), py::arg("width"));
@@ -178,11 +179,11 @@ void bind_snapshot(py::module_& module) {
   module.def(
       "write_file", [](const fs::path& file, const py::bytes& content) { write_bytes(file, content); }, py::arg("file"),
       py::arg("content"));
-  module.def("is_stream", &is_stream, py::arg("file"));
+  module.def("is_stream", &files::is_stream, py::arg("file"));
   module.def("read_series", &series, py::arg("file"));
   module.def("generate", &generate, py::arg("scene"), py::arg("clumped"));
-  module.def("quantities", [] { return described(measured_quantities()); });
-  module.def("summary_quantities", [] { return described(summary_quantities()); });
+  module.def("quantities", [] { return described(runs::measured_quantities()); });
+  module.def("summary_quantities", [] { return described(runs::summary_quantities()); });
   module.def("analyze", &analyze_path, py::arg("path"), py::arg("since"), py::arg("until"));
   module.def("from_arrays", &from_arrays, py::arg("text"), py::arg("name"), py::arg("overrides"), py::arg("positions"),
              py::arg("velocities"), py::arg("radii"), py::arg("masses"), py::arg("spins"), py::arg("relax"));

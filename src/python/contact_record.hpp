@@ -22,7 +22,7 @@ struct ContactRecord {
 };
 
 /// Records contacts with a normal speed of at least `minimum_speed` (m/s).
-class ContactRecorder : public DriftObserver {
+class ContactRecorder : public collision::DriftObserver {
 public:
   ContactRecorder(double minimum_speed, double orbital_frequency)
       : minimum_speed_(minimum_speed), omega_(orbital_frequency) {
@@ -37,11 +37,11 @@ public:
 
   bool wants_events() const override { return false; }
   bool wants_records() const override { return true; }
-  void recorded(std::span<const CollisionRecord> records) override {
+  void recorded(std::span<const collision::CollisionRecord> records) override {
     assert(simulation_ && "watch() was called");
-    const SimulationState& state = simulation_->state();
+    const simulation::SimulationState& state = simulation_->state();
     const double middle = simulation_->orbits() + 0.5 * state.step_length / two_pi;
-    for (const CollisionRecord& c : records)
+    for (const collision::CollisionRecord& c : records)
       if (c.normal_speed * omega_ >= minimum_speed_)
         rows_.push_back({middle + c.time / two_pi, c.low_id, c.high_id, c.contact_point.x(), c.contact_point.y(),
                          c.contact_point.z(), c.normal_speed * omega_, c.tangential_speed * omega_,

@@ -51,8 +51,8 @@ const Simulation& HeldSimulation::simulation() const {
   return *simulation_;
 }
 
-const SimulationState& HeldSimulation::whole_state() const {
-  const SimulationState& state = simulation().state();
+const simulation::SimulationState& HeldSimulation::whole_state() const {
+  const simulation::SimulationState& state = simulation().state();
   if (broken())
     throw Error(ExitCode::run_time,
                 fmt::format("this simulation cannot go on (an invariant broke: {}); inspect its state with snapshot(), "
@@ -68,7 +68,7 @@ void HeldSimulation::detach_views() {
     return;
   auto viewed = std::make_shared<ViewedState>();
   auto next = std::make_unique<Simulation>(scene_, simulation_->state());
-  static_assert(std::is_nothrow_move_constructible_v<SimulationState>);
+  static_assert(std::is_nothrow_move_constructible_v<simulation::SimulationState>);
   if (viewed_state_.use_count() > 1)
     viewed_state_->state.emplace(std::move(*simulation_).take_state());
   viewed_state_ = std::move(viewed);
@@ -80,7 +80,7 @@ void HeldSimulation::detach_views() {
 
 // Calls change(). If it throws, restores the state and the recorded contacts, unless an invariant broke. `before` is
 // the memory for the copy.
-template<class Change> void HeldSimulation::change(SimulationState& before, const Change& change) {
+template<class Change> void HeldSimulation::change(simulation::SimulationState& before, const Change& change) {
   const std::size_t contacts = recorder_ ? recorder_->rows().size() : 0;
   {
     const Unlocked unlocked;
@@ -125,7 +125,7 @@ void HeldSimulation::advance(std::int64_t until_tick) {
   const Busy here(busy_);
   require_own_threads();
   detach_views();
-  SimulationState before;
+  simulation::SimulationState before;
   while (simulation_->state().step < until_tick) {
     try {
       change(before, [&] { step_until(until_tick); });
@@ -144,7 +144,7 @@ void HeldSimulation::replace(Particles particles) {
   const Busy here(busy_);
   require_own_threads();
   detach_views();
-  SimulationState before;
+  simulation::SimulationState before;
   change(before, [&] {
     const Unlocked unlocked;
     simulation_->replace(std::move(particles));

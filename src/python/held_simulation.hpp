@@ -21,7 +21,7 @@ namespace keeler::python {
 /// The owner of the memory that numpy arrays view; the arrays share it. When the simulation continues while such arrays
 /// exist, it leaves its state to them and continues with a copy.
 struct ViewedState {
-  std::optional<SimulationState> state; ///< after the simulation has left it
+  std::optional<simulation::SimulationState> state; ///< after the simulation has left it
 };
 
 class HeldSimulation {
@@ -39,11 +39,11 @@ public:
 
   /// Returns the simulation for reading. Throws Error (run_time) while another thread computes with it.
   const Simulation& simulation() const;
-  const SimulationState& state() const { return simulation().state(); }
+  const simulation::SimulationState& state() const { return simulation().state(); }
 
   /// Returns the state of a simulation that can continue. Throws Error (run_time) as simulation() does, and after a
   /// broken invariant.
-  const SimulationState& whole_state() const;
+  const simulation::SimulationState& whole_state() const;
 
   /// True if an invariant broke in a step; the state is then at Simulation::time_at_break(), and can be read.
   bool broken() const { return broken_.has_value(); }
@@ -76,7 +76,7 @@ private:
   void require_idle() const;
   void detach_views();
   void step_until(std::int64_t until_tick);
-  template<class Change> void change(SimulationState& before, const Change& change);
+  template<class Change> void change(simulation::SimulationState& before, const Change& change);
 
   Scene scene_;
   std::shared_ptr<ViewedState> viewed_state_ = std::make_shared<ViewedState>();

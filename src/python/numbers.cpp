@@ -33,11 +33,11 @@ py::object as_python(const Json& json) {
   }
 }
 
-py::dict described(std::span<const Quantity> quantities) {
+py::dict described(std::span<const quantities::Quantity> quantities) {
   py::dict all;
-  for (const Quantity& quantity : quantities)
-    for (const UnitSystem system : quantity.systems()) {
-      const bool has_spread = quantity.spread != Spread::none;
+  for (const quantities::Quantity& quantity : quantities)
+    for (const quantities::UnitSystem system : quantity.systems()) {
+      const bool has_spread = quantity.spread != quantities::Spread::none;
       all[py::str(quantity.full_name(system))] = py::make_tuple(
           std::string(unit_in(quantity.unit, system).text), quantity.meaning,
           has_spread ? py::object(py::str(quantity.spread_name())) : py::object(py::none()), quantity.full_name());

@@ -17,6 +17,6 @@ py::object as_python(const nlohmann::ordered_json& json);
 
 /// Returns a dictionary from full names to (unit, meaning, name of the error or scatter in SI or None, name of the
 /// number in SI).
-py::dict described(std::span<const Quantity> quantities);
+py::dict described(std::span<const quantities::Quantity> quantities);
 
 } // namespace keeler::python

@@ -9,7 +9,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::quantities {
 namespace {
 
 std::string joined(const std::string& name, std::string_view suffix) {
@@ -61,7 +61,7 @@ Value value_of(const std::optional<double>& number, const std::string& why_not) 
   return number && std::isfinite(*number) ? Value(*number) : Value(Unknown{why_not});
 }
 
-Value value_of(const Measured& number, const std::string& why_not) {
+Value value_of(const statistics::Measured& number, const std::string& why_not) {
   return number.value ? Value(Uncertain{*number.value, number.scatter}) : Value(Unknown{why_not});
 }
 
@@ -127,4 +127,4 @@ const Quantity* find_quantity(std::span<const Quantity> quantities, const std::s
   return found == quantities.end() ? nullptr : &*found;
 }
 
-} // namespace keeler
+} // namespace keeler::quantities

@@ -3,7 +3,7 @@
 #include <cassert>
 #include <utility>
 
-namespace keeler {
+namespace keeler::quantities {
 
 double PatchUnits::speed(UnitSystem system) const {
   assert(frequency > 0.0);
@@ -49,4 +49,4 @@ std::string ascii(std::string_view text) {
   return plain;
 }
 
-} // namespace keeler
+} // namespace keeler::quantities

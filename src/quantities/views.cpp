@@ -11,7 +11,7 @@
 #include <cmath>
 #include <set>
 
-namespace keeler {
+namespace keeler::quantities {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -51,7 +51,7 @@ Json json_of(const Value& value) {
                                [](const std::vector<Record>& records) {
                                  Json list = Json::array();
                                  for (const Record& record : records)
-                                   list.push_back(keeler::json_of(record));
+                                   list.push_back(quantities::json_of(record));
                                  return list;
                                },
                                [](const auto& other) { return Json(other); }},
@@ -311,4 +311,4 @@ std::string markdown_of(std::span<const Quantity> quantities) {
   return table;
 }
 
-} // namespace keeler
+} // namespace keeler::quantities

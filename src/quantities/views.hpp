@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace keeler {
+namespace keeler::quantities {
 
 /// Returns null if the number is missing or not finite.
 nlohmann::ordered_json or_null(const std::optional<double>& number);
@@ -33,4 +33,4 @@ std::vector<std::vector<std::string>> table_of(const Record& record);
 /// Returns a Markdown table: name, unit, meaning.
 std::string markdown_of(std::span<const Quantity> quantities);
 
-} // namespace keeler
+} // namespace keeler::quantities

@@ -16,7 +16,7 @@
 #include <cstddef>
 #include <utility>
 
-namespace keeler {
+namespace keeler::render {
 namespace {
 
 constexpr std::array<std::pair<const char*, ColourField>, 6> fields = {{{"height", ColourField::height},
@@ -48,7 +48,7 @@ std::vector<double> spins(const Patch& patch) {
 
 std::vector<double> cluster_sizes(const Patch& patch) {
   std::vector<double> values(patch.size(), 1.0);
-  for (const Cluster& cluster : find_clusters(patch))
+  for (const diagnostics::Cluster& cluster : diagnostics::find_clusters(patch))
     for (const std::uint32_t member : cluster.members)
       values[member] = static_cast<double>(cluster.members.size());
   return values;
@@ -120,7 +120,7 @@ std::vector<std::array<std::uint8_t, 3>> bar_colours(std::size_t count) {
   const auto byte = [](double channel) { return static_cast<std::uint8_t>(std::lround(255.0 * channel)); };
   std::vector<std::array<std::uint8_t, 3>> colours;
   for (std::size_t k = 0; k < count; ++k) {
-    const Colour colour = field_colour((static_cast<double>(k) + 0.5) / static_cast<double>(count));
+    const plot::Colour colour = field_colour((static_cast<double>(k) + 0.5) / static_cast<double>(count));
     colours.push_back({byte(colour.r), byte(colour.g), byte(colour.b)});
   }
   return colours;
@@ -144,4 +144,4 @@ std::string label_of(ColourField field) {
   return {};
 }
 
-} // namespace keeler
+} // namespace keeler::render

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::render {
 
 enum class ColourField {
   height,  ///< z of a particle, as shades of one colour without a bar
@@ -51,4 +51,4 @@ std::vector<std::array<std::uint8_t, 3>> bar_colours(std::size_t count);
 /// Returns the label of the bar: the quantity and its unit.
 std::string label_of(ColourField field);
 
-} // namespace keeler
+} // namespace keeler::render

@@ -6,7 +6,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::render {
 namespace {
 
 constexpr double particles_per_cell = 4.0;
@@ -57,4 +57,4 @@ std::vector<double> DensityMap::inner_values() const {
   return inner;
 }
 
-} // namespace keeler
+} // namespace keeler::render

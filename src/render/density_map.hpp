@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::render {
 
 class DensityMap {
 public:
@@ -33,4 +33,4 @@ private:
   std::vector<double> values_;
 };
 
-} // namespace keeler
+} // namespace keeler::render

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-namespace keeler {
+namespace keeler::render {
 
 /// Calls visit(k, position) for every particle k and its images in the box and in the neighbouring ones.
 template<class Visit> void for_each_image(const Patch& patch, const Visit& visit) {
@@ -19,4 +19,4 @@ template<class Visit> void for_each_image(const Patch& patch, const Visit& visit
   }
 }
 
-} // namespace keeler
+} // namespace keeler::render

@@ -16,7 +16,7 @@
 
 #include <unistd.h>
 
-namespace keeler {
+namespace keeler::render {
 namespace {
 
 PictureScale common_scale(std::size_t count, const std::function<Patch(std::size_t)>& patch, ColourField field,
@@ -52,7 +52,7 @@ bool has_ffmpeg() {
 } // namespace
 
 void require_movie_name(const std::string& path) {
-  refuse_stream(path, "MP4");
+  files::refuse_stream(path, "MP4");
   if (std::filesystem::path(path).extension() != ".mp4")
     throw UsageError(fmt::format("'{}' cannot be a movie: movies are .mp4 files; give it that ending", path));
   if (!has_ffmpeg())
@@ -71,7 +71,7 @@ void render_movie(std::size_t count, const std::function<Patch(std::size_t)>& pa
   int width = 0, height = 0;
   for (std::size_t k = 0; k < count; ++k) {
     throw_if_interrupted();
-    const std::unique_ptr<Page> page = patch_page(patch(k), look);
+    const std::unique_ptr<plot::Page> page = patch_page(patch(k), look);
     if (!movie) {
       width = page->width();
       height = page->height();
@@ -88,4 +88,4 @@ void render_movie(std::size_t count, const std::function<Patch(std::size_t)>& pa
     movie->finish();
 }
 
-} // namespace keeler
+} // namespace keeler::render

@@ -8,7 +8,7 @@
 #include <functional>
 #include <string>
 
-namespace keeler {
+namespace keeler::render {
 
 inline constexpr int movie_frames_per_second = 12;
 
@@ -21,4 +21,4 @@ void require_movie_name(const std::string& path);
 void render_movie(std::size_t count, const std::function<Patch(std::size_t)>& patch, const std::string& path,
                   const PictureOptions& options, const std::function<void(const Progress&)>& progress = {});
 
-} // namespace keeler
+} // namespace keeler::render

@@ -18,7 +18,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace keeler {
+namespace keeler::render {
 namespace {
 
 // The descriptor of the output file in ffmpeg.
@@ -100,7 +100,7 @@ void Mp4::fail() const {
                             name_.string(), first_message()));
 }
 
-void Mp4::add(Page& page) {
+void Mp4::add(plot::Page& page) {
   std::span<const std::byte> pixels = page.pixels();
   while (!pixels.empty()) {
     const ssize_t written = write(pipe_, pixels.data(), pixels.size());
@@ -120,4 +120,4 @@ void Mp4::finish() {
   file_.keep();
 }
 
-} // namespace keeler
+} // namespace keeler::render

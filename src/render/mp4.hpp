@@ -12,7 +12,7 @@
 
 #include <sys/types.h>
 
-namespace keeler {
+namespace keeler::render {
 
 class Mp4 {
 public:
@@ -22,7 +22,7 @@ public:
   ~Mp4();
 
   /// Appends a frame; all frames must have one size. Throws IoError.
-  void add(Page& page);
+  void add(plot::Page& page);
   /// Completes the file. Throws IoError.
   void finish();
 
@@ -36,10 +36,10 @@ private:
   [[noreturn]] void fail() const;
 
   std::filesystem::path name_;
-  NewFile file_;
+  files::NewFile file_;
   std::unique_ptr<std::FILE, CloseFile> messages_; // standard error of ffmpeg, an unnamed file
   int pipe_ = -1;
   pid_t process_ = -1; // -1: it has ended
 };
 
-} // namespace keeler
+} // namespace keeler::render

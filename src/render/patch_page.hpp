@@ -7,9 +7,9 @@
 
 #include <memory>
 
-namespace keeler {
+namespace keeler::render {
 
 /// Draws the picture. Throws UsageError as render_patch.
-std::unique_ptr<Page> patch_page(const Patch& patch, const PictureOptions& options);
+std::unique_ptr<plot::Page> patch_page(const Patch& patch, const PictureOptions& options);
 
-} // namespace keeler
+} // namespace keeler::render

@@ -17,20 +17,22 @@
 #include <initializer_list>
 #include <numbers>
 
-namespace keeler {
+namespace keeler::render {
 namespace {
 
-void draw_header(Page& page, const Patch& patch, const PictureOptions& options, const Theme& theme, double u) {
-  page.text({110 * u, 58 * u}, options.title, {32 * u, theme.ink, Align::left, true});
+void draw_header(plot::Page& page, const Patch& patch, const PictureOptions& options, const plot::Theme& theme,
+                 double u) {
+  page.text({110 * u, 58 * u}, options.title, {32 * u, theme.ink, plot::Align::left, true});
   const std::string facts = fmt::format(
       "t = {:.2f} orbits      N = {}      τ = {:.2f}      Σ = {:.0f} kg/m²      λ_{{cr}} = {:.1f} m      Q = {:.2f}",
-      patch.time_orbits, patch.size(), optical_depth(patch), surface_density(patch), critical_wavelength(patch),
-      toomre_q(patch));
+      patch.time_orbits, patch.size(), diagnostics::optical_depth(patch), diagnostics::surface_density(patch),
+      diagnostics::critical_wavelength(patch), diagnostics::toomre_q(patch));
   page.text({110 * u, 98 * u}, facts, {21 * u, theme.faint_ink});
 }
 
 // Returns the first of several names, longest first, that is no wider than `room`; empty if none fits.
-std::string fitting(Page& page, std::initializer_list<const char*> names, const TextStyle& style, double room) {
+std::string fitting(plot::Page& page, std::initializer_list<const char*> names, const plot::TextStyle& style,
+                    double room) {
   for (const char* name : names)
     if (page.text_width(name, style) <= room)
       return name;
@@ -38,24 +40,26 @@ std::string fitting(Page& page, std::initializer_list<const char*> names, const 
 }
 
 // Draws the frame of a view, with metres from its middle. `rise` is pixels per metre of the upward axis.
-void draw_axes(Page& page, const PixelFrame& f, double pixels_per_metre, double rise, const Theme& theme, double u) {
+void draw_axes(plot::Page& page, const PixelFrame& f, double pixels_per_metre, double rise, const plot::Theme& theme,
+               double u) {
   const double x = 0.5 * f.width / pixels_per_metre, y = 0.5 * f.height / rise;
-  const PageRectangle place{static_cast<double>(f.left), static_cast<double>(f.top), static_cast<double>(f.width),
-                            static_cast<double>(f.height)};
-  PlotFrame(place, {.range = {-x, x}}, {.range = {-y, y}}, {theme, 17 * u}).draw_axes(page);
+  const plot::PageRectangle place{static_cast<double>(f.left), static_cast<double>(f.top), static_cast<double>(f.width),
+                                  static_cast<double>(f.height)};
+  plot::PlotFrame(place, {.range = {-x, x}}, {.range = {-y, y}}, {theme, 17 * u}).draw_axes(page);
 }
 
 // Draws the scale bar and the name of the radial axis, below the top view.
-void draw_scale(Page& page, const Patch& patch, const PictureLayout& layout, const Colour& ink, double u) {
+void draw_scale(plot::Page& page, const Patch& patch, const PictureLayout& layout, const plot::Colour& ink, double u) {
   const PixelFrame& f = layout.top_view;
   const double y = f.top + f.height + 62 * u, right = f.left + f.width;
-  const double bar = round_below(0.25 * patch.box.size_x), pixels = bar * layout.pixels_per_metre;
+  const double bar = plot::round_below(0.25 * patch.box.size_x), pixels = bar * layout.pixels_per_metre;
   page.line({f.left + 0.5, y - 7 * u}, {f.left + pixels, y - 7 * u}, ink, 3 * u);
   for (const double x : {f.left + 1.5 * u, f.left + pixels - 1.5 * u})
     page.line({x, y - 15 * u}, {x, y + 1 * u}, ink, 3 * u);
-  const std::string length = fmt::format("{:g} m = {:.2f} λ_{{cr}}", bar, bar / critical_wavelength(patch));
+  const std::string length =
+      fmt::format("{:g} m = {:.2f} λ_{{cr}}", bar, bar / diagnostics::critical_wavelength(patch));
   const double used = pixels + 18 * u + page.text({f.left + pixels + 18 * u, y}, length, {20 * u, ink});
-  const TextStyle style{20 * u, ink, Align::right};
+  const plot::TextStyle style{20 * u, ink, plot::Align::right};
   const std::string name =
       fitting(page, {"radial, away from the planet, m", "radial, m", "radial"}, style, f.width - used - 130 * u);
   if (name.empty())
@@ -65,29 +69,30 @@ void draw_scale(Page& page, const Patch& patch, const PictureLayout& layout, con
 }
 
 // Draws the name of the upward axis left of a view: the first one that fits.
-void draw_upward(Page& page, const PixelFrame& f, std::initializer_list<const char*> names, const Colour& ink,
-                 double u) {
+void draw_upward(plot::Page& page, const PixelFrame& f, std::initializer_list<const char*> names,
+                 const plot::Colour& ink, double u) {
   const double x = f.left - 72 * u, arrow = std::min(90 * u, 0.4 * f.height);
-  const TextStyle style{20 * u, ink, Align::right};
+  const plot::TextStyle style{20 * u, ink, plot::Align::right};
   page.arrow({x - 7 * u, f.top + arrow}, {x - 7 * u, f.top + 1.0}, ink, 2 * u);
   page.text({x, f.top + arrow + 10 * u}, fitting(page, names, style, f.height - arrow - 10 * u), style, true);
 }
 
 // Draws the colour bar below the views.
-void draw_colour_bar(Page& page, const PictureLayout& layout, ColourField field, const ColourRange& range,
-                     const Theme& theme, double u) {
+void draw_colour_bar(plot::Page& page, const PictureLayout& layout, ColourField field, const ColourRange& range,
+                     const plot::Theme& theme, double u) {
   const int left = layout.edge_view.left, top = layout.foot + static_cast<int>(72 * u);
-  Raster bar(static_cast<int>(420 * u), std::max(2, static_cast<int>(16 * u)), space_colour);
+  Raster bar(static_cast<int>(420 * u), std::max(2, static_cast<int>(16 * u)), plot::space_colour);
   for (int j = 0; j < bar.height(); ++j)
     for (int i = 0; i < bar.width(); ++i)
       bar.pixel(i, j) = field_colour((i + 0.5) / bar.width());
   page.draw_pixels(bar.pixels(), bar.width(), left, top);
   page.frame(left, top, bar.width(), bar.height(), mix(theme.page, theme.faint_ink, 0.5));
   const double below = top + bar.height() + 22 * u, right = left + bar.width();
-  page.text({0.5 * (left + right), below}, format_number(range.middle(), 3), {17 * u, theme.faint_ink, Align::centre});
+  page.text({0.5 * (left + right), below}, format_number(range.middle(), 3),
+            {17 * u, theme.faint_ink, plot::Align::centre});
   if (range.high > range.low) {
     page.text({static_cast<double>(left), below}, format_number(range.low, 3), {17 * u, theme.faint_ink});
-    page.text({right, below}, format_number(range.high, 3), {17 * u, theme.faint_ink, Align::right});
+    page.text({right, below}, format_number(range.high, 3), {17 * u, theme.faint_ink, plot::Align::right});
   }
   page.text({right + 18 * u, top + 0.5 * bar.height() + 7 * u}, label_of(field), {20 * u, theme.ink});
 }
@@ -109,7 +114,7 @@ PictureScale picture_scale(const Patch& patch, ColourField field) {
   // The 99.9th percentile, with a margin.
   const auto nearly_all = tops.begin() + static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(tops.size() - 1));
   std::nth_element(tops.begin(), nearly_all, tops.end());
-  return {1.25 * *nearly_all, 2.0 * std::max(scale_height(patch), 1e-3 * mean_radius(patch)),
+  return {1.25 * *nearly_all, 2.0 * std::max(diagnostics::scale_height(patch), 1e-3 * diagnostics::mean_radius(patch)),
           field == ColourField::height ? ColourRange() : colour_range(field_values(patch, field), field)};
 }
 
@@ -145,7 +150,7 @@ PictureLayout layout_of(const Patch& patch, const PictureOptions& options) {
   return layout;
 }
 
-std::unique_ptr<Page> patch_page(const Patch& patch, const PictureOptions& asked) {
+std::unique_ptr<plot::Page> patch_page(const Patch& patch, const PictureOptions& asked) {
   if (patch.size() == 0)
     throw UsageError("the patch holds no particles, so there is nothing to draw; choose another snapshot");
   if (asked.width < min_picture_width || asked.width > max_picture_width)
@@ -157,10 +162,10 @@ std::unique_ptr<Page> patch_page(const Patch& patch, const PictureOptions& asked
   if (!options.scale)
     options.scale = picture_scale(patch, options.colour);
   const PictureLayout layout = layout_of(patch, options);
-  const Theme& theme = options.theme == PictureTheme::light ? light_theme : dark_theme;
+  const plot::Theme& theme = options.theme == PictureTheme::light ? plot::light_theme : plot::dark_theme;
   const double u = options.width / 1600.0;
   const PatchViews views = patch_views(patch, layout, options.colour, *options.scale);
-  auto page = std::make_unique<Page>(layout.width, layout.height, theme.page);
+  auto page = std::make_unique<plot::Page>(layout.width, layout.height, theme.page);
   page->draw_pixels(views.top.pixels(), views.top.width(), layout.top_view.left, layout.top_view.top);
   page->draw_pixels(views.edge.pixels(), views.edge.width(), layout.edge_view.left, layout.edge_view.top);
   draw_header(*page, patch, options, theme, u);
@@ -189,4 +194,4 @@ void render_patch(const Patch& patch, const std::string& path, const PictureOpti
   patch_page(patch, options)->save(path);
 }
 
-} // namespace keeler
+} // namespace keeler::render

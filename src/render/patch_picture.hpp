@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::render {
 
 enum class PictureTheme { dark, light }; ///< of the page; the views always have a dark sky
 
@@ -64,4 +64,4 @@ std::vector<std::byte> patch_png(const Patch& patch, const PictureOptions& optio
 /// Writes a PNG file. Throws as patch_png(), and IoError when the file cannot be written.
 void render_patch(const Patch& patch, const std::string& path, const PictureOptions& options = {});
 
-} // namespace keeler
+} // namespace keeler::render

@@ -9,16 +9,16 @@
 #include <cstdint>
 #include <tuple>
 
-namespace keeler {
+namespace keeler::render {
 namespace {
 
 // Shades of ring particles: umber far from the viewer, ivory near.
-constexpr std::array<Colour, 4> ring_colours = {Colour{0.36, 0.25, 0.18}, Colour{0.70, 0.53, 0.37},
-                                                Colour{0.93, 0.80, 0.62}, Colour{1.0, 0.96, 0.88}};
+constexpr std::array<plot::Colour, 4> ring_colours = {plot::Colour{0.36, 0.25, 0.18}, plot::Colour{0.70, 0.53, 0.37},
+                                                      plot::Colour{0.93, 0.80, 0.62}, plot::Colour{1.0, 0.96, 0.88}};
 // Violet through green to yellow: perceptually uniform, also in greyscale and for colour-blind readers.
-constexpr std::array<Colour, 5> field_colours = {Colour{0.27, 0.23, 0.52}, Colour{0.16, 0.45, 0.56},
-                                                 Colour{0.13, 0.66, 0.52}, Colour{0.48, 0.82, 0.32},
-                                                 Colour{0.99, 0.91, 0.14}};
+constexpr std::array<plot::Colour, 5> field_colours = {plot::Colour{0.27, 0.23, 0.52}, plot::Colour{0.16, 0.45, 0.56},
+                                                       plot::Colour{0.13, 0.66, 0.52}, plot::Colour{0.48, 0.82, 0.32},
+                                                       plot::Colour{0.99, 0.91, 0.14}};
 
 // A particle or periodic image that is visible in the frame.
 struct Shown {
@@ -61,7 +61,7 @@ void sort_along(std::vector<Shown>& shown, const Vec3& direction) {
 }
 
 Raster density_view(const Patch& patch, const PictureLayout& layout, const PictureScale& scale) {
-  Raster raster(layout.top_view.width, layout.top_view.height, space_colour);
+  Raster raster(layout.top_view.width, layout.top_view.height, plot::space_colour);
   const DensityMap map(patch);
   for (int j = 0; j < raster.height(); ++j)
     for (int i = 0; i < raster.width(); ++i) {
@@ -73,7 +73,7 @@ Raster density_view(const Patch& patch, const PictureLayout& layout, const Pictu
 }
 
 Raster top_view(const PictureLayout& layout, ColourField field, const PictureScale& scale, std::vector<Shown>& shown) {
-  Raster raster(layout.top_view.width, layout.top_view.height, space_colour);
+  Raster raster(layout.top_view.width, layout.top_view.height, plot::space_colour);
   const double pixels = layout.pixels_per_metre;
   const ViewAxes axes(layout.elevation);
   sort_along(shown, axes.near);
@@ -87,22 +87,22 @@ Raster top_view(const PictureLayout& layout, ColourField field, const PictureSca
 
 // Draws the view along the orbit, from behind; the far end of the box fades.
 Raster edge_view(const Patch& patch, const PictureLayout& layout, ColourField field, std::vector<Shown>& shown) {
-  Raster raster(layout.edge_view.width, layout.edge_view.height, space_colour);
+  Raster raster(layout.edge_view.width, layout.edge_view.height, plot::space_colour);
   const double pixels = layout.pixels_per_metre;
   const bool has_values = field != ColourField::height && field != ColourField::density;
   sort_along(shown, -Vec3::UnitY());
   for (const Shown& s : shown) {
     const double nearness = 0.5 - s.position.y() / patch.box.size_y;
-    const Colour colour = has_values ? field_colour(s.colour_position) : ramp(ring_colours, nearness);
+    const plot::Colour colour = has_values ? field_colour(s.colour_position) : ramp(ring_colours, nearness);
     raster.sphere(0.5 * raster.width() + pixels * s.position.x(), 0.5 * raster.height() - pixels * s.position.z(),
-                  pixels * s.radius, mix(space_colour, colour, 0.15 + 0.85 * nearness));
+                  pixels * s.radius, mix(plot::space_colour, colour, 0.15 + 0.85 * nearness));
   }
   return raster;
 }
 
 } // namespace
 
-Colour field_colour(double position) {
+plot::Colour field_colour(double position) {
   return ramp(field_colours, position);
 }
 
@@ -117,4 +117,4 @@ PatchViews patch_views(const Patch& patch, const PictureLayout& layout, ColourFi
   return {top_view(layout, field, scale, above), std::move(edge)};
 }
 
-} // namespace keeler
+} // namespace keeler::render

@@ -5,7 +5,7 @@
 
 #include <keeler/render/patch_picture.hpp>
 
-namespace keeler {
+namespace keeler::render {
 
 struct PatchViews {
   Raster top, edge;
@@ -15,6 +15,6 @@ struct PatchViews {
 PatchViews patch_views(const Patch& patch, const PictureLayout& layout, ColourField field, const PictureScale& scale);
 
 /// Returns the colour at a position on the colour bar, from 0 to 1.
-Colour field_colour(double position);
+plot::Colour field_colour(double position);
 
-} // namespace keeler
+} // namespace keeler::render

@@ -7,7 +7,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::render {
 namespace {
 
 constexpr double min_radius =
@@ -26,13 +26,13 @@ double lit(double u, double v) {
 
 } // namespace
 
-Raster::Raster(int width, int height, const Colour& background)
+Raster::Raster(int width, int height, const plot::Colour& background)
     : width_(width), height_(height),
-      pixels_(affordable_size(static_cast<double>(width) * height, sizeof(Colour),
+      pixels_(affordable_size(static_cast<double>(width) * height, sizeof(plot::Colour),
                               fmt::format("a picture of {} x {} pixels", width, height), "lower its width"),
               background) {}
 
-void Raster::sphere(double x, double y, double radius, const Colour& colour) {
+void Raster::sphere(double x, double y, double radius, const plot::Colour& colour) {
   assert(radius > 0.0);
   const double drawn = std::max(radius, min_radius);
   const double light_fraction = radius * radius / (drawn * drawn);
@@ -45,7 +45,7 @@ void Raster::sphere(double x, double y, double radius, const Colour& colour) {
   for (int j = top; j <= bottom; ++j)
     for (int i = left; i <= right; ++i) {
       const double u = i + 0.5 - x, v = j + 0.5 - y, distance = std::sqrt(u * u + v * v);
-      Colour& here = pixel(i, j);
+      plot::Colour& here = pixel(i, j);
       const double outside =
           (distance / drawn - 1.0) / (shadow_reach - 1.0); // 0 at the rim, 1 at the end of the shadow
       if (outside < 1.0) {
@@ -55,11 +55,11 @@ void Raster::sphere(double x, double y, double radius, const Colour& colour) {
       const double cover = std::clamp(drawn - distance + 0.5, 0.0, 1.0);
       if (cover > 0.0) {
         const double brightness = lit(u / drawn, v / drawn);
-        const Colour shaded{std::min(1.0, colour.r * brightness), std::min(1.0, colour.g * brightness),
-                            std::min(1.0, colour.b * brightness)};
+        const plot::Colour shaded{std::min(1.0, colour.r * brightness), std::min(1.0, colour.g * brightness),
+                                  std::min(1.0, colour.b * brightness)};
         here = mix(here, shaded, cover * light_fraction);
       }
     }
 }
 
-} // namespace keeler
+} // namespace keeler::render

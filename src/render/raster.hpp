@@ -7,26 +7,26 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::render {
 
 class Raster {
 public:
-  Raster(int width, int height, const Colour& background);
+  Raster(int width, int height, const plot::Colour& background);
 
   int width() const { return width_; }
   int height() const { return height_; }
-  const Colour& pixel(int x, int y) const { return pixels_[static_cast<std::size_t>(y * width_ + x)]; }
-  Colour& pixel(int x, int y) { return pixels_[static_cast<std::size_t>(y * width_ + x)]; }
+  const plot::Colour& pixel(int x, int y) const { return pixels_[static_cast<std::size_t>(y * width_ + x)]; }
+  plot::Colour& pixel(int x, int y) { return pixels_[static_cast<std::size_t>(y * width_ + x)]; }
 
-  std::span<const Colour> pixels() const { return pixels_; }
+  std::span<const plot::Colour> pixels() const { return pixels_; }
 
   /// Draws a lit sphere; centre and radius in pixels, where pixel (0, 0) extends from 0 to 1. Parts outside are
   /// clipped. Precondition: radius > 0.
-  void sphere(double x, double y, double radius, const Colour& colour);
+  void sphere(double x, double y, double radius, const plot::Colour& colour);
 
 private:
   int width_, height_;
-  std::vector<Colour> pixels_;
+  std::vector<plot::Colour> pixels_;
 };
 
-} // namespace keeler
+} // namespace keeler::render

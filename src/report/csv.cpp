@@ -4,7 +4,7 @@
 
 #include <cassert>
 
-namespace keeler {
+namespace keeler::report {
 namespace {
 
 // Returns a field, quoted if necessary (RFC 4180).
@@ -46,4 +46,4 @@ std::string csv_with_gaps(nlohmann::ordered_json rows) {
   return csv_of(rows);
 }
 
-} // namespace keeler
+} // namespace keeler::report

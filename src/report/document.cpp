@@ -8,7 +8,7 @@
 
 #include <cstddef>
 
-namespace keeler {
+namespace keeler::report {
 namespace {
 
 // Returns text for one cell of a Markdown table: on one line, | escaped.
@@ -53,9 +53,9 @@ void Document::figure(const std::filesystem::path& folder, const std::string& na
   const bool vector = std::filesystem::exists(folder / (name + ".svg"));
   markdown_ += fmt::format("\n![{}]({}.{})\n\n*{}*\n", name, path, vector ? "svg" : "png", caption);
   const std::string type = vector ? "svg+xml" : "png";
-  body_ +=
-      fmt::format("<figure><img alt=\"{}\" src=\"data:image/{};base64,{}\"><figcaption>{}</figcaption></figure>\n",
-                  name, type, base64(read_file(folder / (name + (vector ? ".svg" : ".png")))), html_inline(caption));
+  body_ += fmt::format("<figure><img alt=\"{}\" src=\"data:image/{};base64,{}\"><figcaption>{}</figcaption></figure>\n",
+                       name, type, base64(files::read_file(folder / (name + (vector ? ".svg" : ".png")))),
+                       html_inline(caption));
 }
 
 std::string Document::html() const {
@@ -67,4 +67,4 @@ std::string Document::html() const {
                      html_text(title_), body_);
 }
 
-} // namespace keeler
+} // namespace keeler::report

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::report {
 
 class Document {
 public:
@@ -27,4 +27,4 @@ private:
   std::string title_, markdown_, body_;
 };
 
-} // namespace keeler
+} // namespace keeler::report

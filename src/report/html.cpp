@@ -6,7 +6,7 @@
 
 #include <cassert>
 
-namespace keeler {
+namespace keeler::report {
 namespace {
 
 // Replaces the marks alternately by the opening and closing tags of the element.
@@ -72,4 +72,4 @@ std::string base64(std::span<const std::byte> bytes) {
   return out;
 }
 
-} // namespace keeler
+} // namespace keeler::report

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::report {
 
 /// Returns text escaped for use between tags: &, < and > become entities.
 std::string html_text(const std::string& text);
@@ -20,4 +20,4 @@ std::string html_table(const std::vector<std::vector<std::string>>& rows);
 /// Returns bytes in the base-64 encoding of RFC 4648.
 std::string base64(std::span<const std::byte> bytes);
 
-} // namespace keeler
+} // namespace keeler::report

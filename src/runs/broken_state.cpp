@@ -4,11 +4,11 @@
 
 #include <fmt/format.h>
 
-namespace keeler {
+namespace keeler::runs {
 
 void fail_broken(const InvariantError& error, const Simulation& simulation, const Scene& scene, const RunFolder& folder,
                  Recorder& recorder) {
-  const BrokenState broken(error, simulation);
+  const initial_conditions::BrokenState broken(error, simulation);
   std::string message = save_broken(broken, folder.broken(broken.step), {scene.resolved, recorder.provenance()});
   try {
     recorder.log("broken", {{"step", broken.step}, {"orbits", broken.patch.time_orbits}, {"reason", error.what()}});
@@ -18,4 +18,4 @@ void fail_broken(const InvariantError& error, const Simulation& simulation, cons
   throw InvariantError(message);
 }
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -7,7 +7,7 @@
 #include <keeler/core/error.hpp>
 #include <keeler/simulation/simulation.hpp>
 
-namespace keeler {
+namespace keeler::runs {
 
 /// Writes broken_NNNNNN.hdf, numbered by the step, and throws an InvariantError with the message of `error`, its time
 /// and the file. The state is that of the last boundary, or of the last contact if the error occurred during a drift.
@@ -15,4 +15,4 @@ namespace keeler {
 [[noreturn]] void fail_broken(const InvariantError& error, const Simulation& simulation, const Scene& scene,
                               const RunFolder& folder, Recorder& recorder);
 
-} // namespace keeler
+} // namespace keeler::runs

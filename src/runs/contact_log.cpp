@@ -8,16 +8,16 @@
 #include <bit>
 #include <cassert>
 
-namespace keeler {
+namespace keeler::runs {
 namespace {
 
 const std::vector<std::string> speed_columns = {"since_orbits", "until_orbits", "speed_from_m_s",
                                                 "speed_to_m_s", "contacts",     "energy_lost_j"};
 
 // Rows are written at snapshots only, so a resumed run cuts off the rows after its last snapshot and writes them again.
-Series open_speeds(const RunFolder& folder, const std::optional<LogResume>& resume) {
-  return resume ? Series::resume(folder.impact_speeds(), speed_columns, resume->last_snapshot_step)
-                : Series::begin(folder.impact_speeds(), speed_columns);
+io::Series open_speeds(const RunFolder& folder, const std::optional<LogResume>& resume) {
+  return resume ? io::Series::resume(folder.impact_speeds(), speed_columns, resume->last_snapshot_step)
+                : io::Series::begin(folder.impact_speeds(), speed_columns);
 }
 
 } // namespace
@@ -27,7 +27,7 @@ void ContactCounters::list_fields(FieldTable& table) {
   speeds.list_fields(table);
 }
 
-bool is_logged(const ContactLogSettings& settings, const CollisionRecord& record, double time_orbits,
+bool is_logged(const scene::ContactLogSettings& settings, const collision::CollisionRecord& record, double time_orbits,
                double orbital_frequency) {
   if (record.normal_speed * orbital_frequency < settings.min_speed || record.radius_sum < settings.min_radius_sum)
     return false;
@@ -39,7 +39,7 @@ bool is_logged(const ContactLogSettings& settings, const CollisionRecord& record
   return random.uniform() < settings.fraction;
 }
 
-ContactLog::ContactLog(const RunFolder& folder, const Scene& scene, const Provenance& provenance,
+ContactLog::ContactLog(const RunFolder& folder, const Scene& scene, const io::Provenance& provenance,
                        const std::optional<LogResume>& resume, std::int64_t file_rows)
     : folder_(folder), scene_(scene), provenance_(provenance), file_rows_(file_rows),
       counters_(resume ? resume->counters : ContactCounters{}), speeds_(open_speeds(folder, resume)) {
@@ -58,7 +58,7 @@ void ContactLog::load_last_file() {
   if (first_row_ == counters_.rows)
     return;
   try {
-    ContactFile file = read_contacts(folder_.contacts(number));
+    io::ContactFile file = io::read_contacts(folder_.contacts(number));
     const std::int64_t wanted = counters_.rows - file.meta.first_row;
     if (file.meta.first_row >= first_row_ && wanted >= 0 && wanted <= static_cast<std::int64_t>(file.rows.size())) {
       first_row_ = file.meta.first_row;
@@ -78,13 +78,13 @@ void ContactLog::watch(Simulation& simulation) {
   simulation.drift().observe(this);
 }
 
-void ContactLog::recorded(std::span<const CollisionRecord> records) {
+void ContactLog::recorded(std::span<const collision::CollisionRecord> records) {
   assert(simulation_ != nullptr && scene_.output.collisions);
   const double omega = scene_.planet.orbital_frequency;
-  const SimulationState& state = simulation_->state();
+  const simulation::SimulationState& state = simulation_->state();
   const std::int64_t step = state.step;
   const double middle = static_cast<double>(step) + 0.5 * static_cast<double>(state.control.step);
-  for (const CollisionRecord& record : records) {
+  for (const collision::CollisionRecord& record : records) {
     counters_.speeds.add(record.normal_speed * omega, record.energy_lost * omega * omega);
     const double time = middle * scene_.time.step + record.time / two_pi;
     if (!is_logged(*scene_.output.collisions, record, time, omega))
@@ -130,4 +130,4 @@ void ContactLog::end_interval(std::int64_t last_snapshot_step, std::int64_t step
   speeds.clear();
 }
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -14,7 +14,7 @@
 #include <keeler/io/series.hpp>
 #include <keeler/simulation/simulation.hpp>
 
-namespace keeler {
+namespace keeler::runs {
 
 /// The part of the log that a checkpoint stores.
 struct ContactCounters {
@@ -31,15 +31,15 @@ struct LogResume {
 };
 
 /// Returns true if the log selects a contact. The random choice depends on its time (orbits) and ids alone.
-bool is_logged(const ContactLogSettings& settings, const CollisionRecord& record, double time_orbits,
+bool is_logged(const scene::ContactLogSettings& settings, const collision::CollisionRecord& record, double time_orbits,
                double orbital_frequency);
 
-class ContactLog final : public DriftObserver {
+class ContactLog final : public collision::DriftObserver {
 public:
   static constexpr std::int64_t rows_per_file = std::int64_t{1} << 19;
 
   /// Begins a log, or continues one. The scene must outlive it. Throws IoError when the log cannot be written.
-  ContactLog(const RunFolder& folder, const Scene& scene, const Provenance& provenance,
+  ContactLog(const RunFolder& folder, const Scene& scene, const io::Provenance& provenance,
              const std::optional<LogResume>& resume, std::int64_t file_rows = rows_per_file);
 
   /// Registers this log for the contacts of all following steps. The log must outlive them.
@@ -55,11 +55,11 @@ public:
   const ContactCounters& counters() const { return counters_; }
   /// Returns the number of rows that were missing on resume.
   std::int64_t lost_rows() const { return lost_rows_; }
-  Series& speeds() { return speeds_; }
+  io::Series& speeds() { return speeds_; }
 
   bool wants_events() const override { return false; }
   bool wants_records() const override { return true; }
-  void recorded(std::span<const CollisionRecord> records) override;
+  void recorded(std::span<const collision::CollisionRecord> records) override;
 
 private:
   void load_last_file();
@@ -67,15 +67,15 @@ private:
 
   RunFolder folder_;
   const Scene& scene_;
-  Provenance provenance_;
+  io::Provenance provenance_;
   std::int64_t file_rows_;
   ContactCounters counters_;
-  Series speeds_;
+  io::Series speeds_;
   const Simulation* simulation_ = nullptr;
-  std::vector<ContactRow> rows_; // of the last file, and later rows until it is written
-  std::int64_t first_row_ = 0;   // index of rows_.front() in the table
-  std::int64_t written_ = -1;    // number of rows on disk
+  std::vector<io::ContactRow> rows_; // of the last file, and later rows until it is written
+  std::int64_t first_row_ = 0;       // index of rows_.front() in the table
+  std::int64_t written_ = -1;        // number of rows on disk
   std::int64_t lost_rows_ = 0;
 };
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace keeler {
+namespace keeler::runs {
 namespace {
 
 // Returns the canonical path: ranks may be started in different folders.
@@ -23,7 +23,7 @@ std::string in_words(const std::optional<double>& number) {
   return number ? fmt::format("{}", *number) : "not given";
 }
 
-std::vector<RequestEntry> asked_of(const RunOptions& options) {
+std::vector<comm::RequestEntry> asked_of(const RunOptions& options) {
   const auto flag = [](bool given) { return given ? "given" : "not given"; };
   return {{"the folder", location(options.folder)},
           {"--force", flag(options.force)},
@@ -36,9 +36,9 @@ std::vector<RequestEntry> asked_of(const RunOptions& options) {
 // read by the root alone. Other files are tables, and are hashed.
 std::string fingerprint(const Scene& scene, const std::string& file) {
   if (file == scene.start_from)
-    return snapshot_seal(file);
-  Hash hash;
-  hash.add_bytes(read_file(file));
+    return io::snapshot_seal(file);
+  io::Hash hash;
+  hash.add_bytes(files::read_file(file));
   return hash.hex();
 }
 
@@ -47,9 +47,9 @@ std::string fingerprint(const Scene& scene, const std::string& file) {
 void require_same_run(const Scene& scene, const RunOptions& options) {
   if (!options.ranks.distributed())
     return;
-  std::vector<RequestEntry> request = asked_of(options);
+  std::vector<comm::RequestEntry> request = asked_of(options);
   options.ranks.together([&] {
-    for (const KeyInForce& key : keys_in_force(scene)) {
+    for (const scene::KeyInForce& key : keys_in_force(scene)) {
       request.push_back({key.path, key.value});
       if (key.file)
         request.push_back({fmt::format("the content of '{}'", *key.file), fingerprint(scene, *key.file)});
@@ -62,4 +62,4 @@ void require_same_run(const RunOptions& options) {
   require_same_request(asked_of(options), options.ranks);
 }
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -12,7 +12,7 @@
 #include <sstream>
 #include <vector>
 
-namespace keeler {
+namespace keeler::runs {
 namespace fs = std::filesystem;
 namespace {
 
@@ -39,7 +39,7 @@ std::optional<EditedScene> EditedScene::in(const RunFolder& folder, const std::s
   std::error_code unknown;
   if (!fs::exists(folder.scene(), unknown))
     return std::nullopt;
-  std::string text = read_lines(folder.scene());
+  std::string text = files::read_lines(folder.scene());
   if (text == stored || text == scene.resolved)
     return std::nullopt;
   return EditedScene(folder, std::move(text), scene);
@@ -65,7 +65,7 @@ std::string EditedScene::notice(const fs::path& newest) const {
                                                "scene from the newest snapshot",
                                                file_.string(), newest.string());
   try {
-    const Scene edited = parse_stored_scene(text_, file_.string());
+    const Scene edited = scene::parse_stored_scene(text_, file_.string());
     const std::vector<std::string> changed = lines_beyond(edited.resolved, scene_.resolved);
     if (changed.empty())
       return fmt::format("{}{}no key differs", ignored, kept);
@@ -78,4 +78,4 @@ std::string EditedScene::notice(const fs::path& newest) const {
   }
 }
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-namespace keeler {
+namespace keeler::runs {
 
 class EditedScene {
 public:
@@ -37,4 +37,4 @@ private:
   const Scene& scene_;
 };
 
-} // namespace keeler
+} // namespace keeler::runs

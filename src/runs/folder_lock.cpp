@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace keeler {
+namespace keeler::runs {
 
 FolderLock::FolderLock(const std::filesystem::path& folder)
     : folder_(folder), descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
@@ -51,4 +51,4 @@ bool folder_is_held(const std::filesystem::path& folder) {
   return held;
 }
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-namespace keeler {
+namespace keeler::runs {
 
 /// Locks a folder during its lifetime. The system releases the lock when the process ends, also when it is killed.
 class FolderLock {
@@ -26,4 +26,4 @@ private:
 /// Returns true if a process holds the folder's lock now; false if the folder does not exist.
 bool folder_is_held(const std::filesystem::path& folder);
 
-} // namespace keeler
+} // namespace keeler::runs

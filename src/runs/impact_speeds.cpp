@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace keeler {
+namespace keeler::runs {
 namespace {
 
 constexpr int lowest_decade = -7, highest_decade = 1, bins_per_decade = 10;
@@ -53,4 +53,4 @@ void ImpactSpeeds::list_fields(FieldTable& table) {
   table.rows<double>("impact_energies", energies_, "J", "energy lost in them");
 }
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::runs {
 
 class ImpactSpeeds {
 public:
@@ -31,4 +31,4 @@ private:
   std::vector<double> energies_;
 };
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -15,7 +15,7 @@
 #include <cmath>
 #include <limits>
 
-namespace keeler {
+namespace keeler::runs {
 namespace {
 
 bool is_finite(const Elements& el) {
@@ -31,7 +31,7 @@ std::array<double, 6> components(const Elements& el) {
 // to the first epoch after the step.
 class CollisionalChange {
 public:
-  CollisionalChange(const BeforeStep& before, const SimulationState& now, const Frequencies& f)
+  CollisionalChange(const BeforeStep& before, const simulation::SimulationState& now, const Frequencies& f)
       : before_(before), now_(now), frequencies_(f), boundary_(f, -0.5 * before.state.step_length),
         step_(f, before.state.step_length), back_(f, -0.5 * (now.step_length - before.state.step_length)),
         offset_(before.state.box.offset(2 * now.step + before.state.control.step, 0.5 * before.state.tick())) {}
@@ -57,7 +57,7 @@ private:
   }
 
   // Applies the half kicks of all forces that kick at this boundary.
-  void half_kicks(const SimulationState& state, std::size_t index, double sign, Elements& el) const {
+  void half_kicks(const simulation::SimulationState& state, std::size_t index, double sign, Elements& el) const {
     for (std::size_t f = 0; f < state.forces.size(); ++f) {
       const std::int64_t ticks = before_.kick_ticks[f];
       if (state.step % ticks == 0)
@@ -67,28 +67,30 @@ private:
   }
 
   const BeforeStep& before_;
-  const SimulationState& now_;
+  const simulation::SimulationState& now_;
   Frequencies frequencies_;
   Rotation boundary_;
-  Rebase step_, back_;
+  hill::Rebase step_, back_;
   double offset_;
 };
 
 } // namespace
 
-double energy_scale(const SimulationState& state, const ParticleMeans& means, const Frequencies& f) {
+double energy_scale(const simulation::SimulationState& state, const diagnostics::ParticleMeans& means,
+                    const Frequencies& f) {
   const double part = f.shear() / (f.kappa * f.kappa);
   const CollisionTally& tally = state.collisions;
   double scale = means.epicyclic_energy + std::fabs(means.spin.energy) + state.energy.epicyclic +
                  std::fabs(state.energy.spin) + std::fabs(tally.energy_lost) +
                  f.shear() * std::fabs(tally.momentum_flux) + part * std::fabs(tally.azimuthal_gain) +
                  std::fabs(state.resting.work);
-  for (const ForceState& force : state.forces)
+  for (const simulation::ForceState& force : state.forces)
     scale += std::fabs(force.work) + part * std::fabs(force.azimuthal_gain);
   return scale;
 }
 
-std::string fault_of_budget(const SimulationState& state, const ParticleMeans& means, const Frequencies& f) {
+std::string fault_of_budget(const simulation::SimulationState& state, const diagnostics::ParticleMeans& means,
+                            const Frequencies& f) {
   const double residual = state.balance(means, f).residual;
   if (!std::isfinite(residual)) {
     const std::string numbers = fault_of_numbers(state);
@@ -101,14 +103,14 @@ std::string fault_of_budget(const SimulationState& state, const ParticleMeans& m
                      format_number(std::fabs(residual) / scale, 2), allowed_residual);
 }
 
-std::string fault_of_numbers(const SimulationState& state) {
+std::string fault_of_numbers(const simulation::SimulationState& state) {
   const Particles& particles = state.particles;
   for (std::size_t k = 0; k < particles.size(); ++k) {
     if (!is_finite(particles.bodies[k].elements))
       return fmt::format("particle {} has elements that are not finite", particles.ids[k]);
     if (particles.rough && !particles.spins[k].allFinite())
       return fmt::format("particle {} has a spin that is not finite", particles.ids[k]);
-    for (const ForceState& force : state.forces)
+    for (const simulation::ForceState& force : state.forces)
       if (!force.accelerations.empty() && !force.accelerations[k].allFinite())
         return fmt::format("particle {} has an acceleration by {} that is not finite", particles.ids[k], force.name);
   }
@@ -116,17 +118,17 @@ std::string fault_of_numbers(const SimulationState& state) {
 }
 
 std::string fault_of_overlap(const Patch& patch) {
-  const Overlap overlap = largest_overlap(patch);
-  if (overlap.depth <= allowed_overlap)
+  const cells::Overlap overlap = cells::largest_overlap(patch);
+  if (overlap.depth <= cells::allowed_overlap)
     return {};
   return fmt::format("particles {} and {} overlap by {} of their radius sum ({:g} is allowed)", overlap.id_i,
-                     overlap.id_j, format_number(overlap.depth, 2), allowed_overlap);
+                     overlap.id_j, format_number(overlap.depth, 2), cells::allowed_overlap);
 }
 
-std::string fault_of_neighbours(const NeighbourAudit& audit) {
+std::string fault_of_neighbours(const collision::NeighbourAudit& audit) {
   if (!audit.missed)
     return {};
-  const MissedNeighbour& missed = *audit.missed;
+  const collision::MissedNeighbour& missed = *audit.missed;
   return fmt::format("particle {} may touch particle {} (image {}, {}), {} radius sums from it in the middle of the "
                      "step, and {}",
                      missed.id, missed.other_id, missed.image.nx, missed.image.ny, format_number(missed.distance, 3),
@@ -141,10 +143,11 @@ BeforeStep before_step(const Simulation& simulation) {
   return before;
 }
 
-std::string fault_of_particles(const SimulationState& before, const SimulationState& now) {
+std::string fault_of_particles(const simulation::SimulationState& before, const simulation::SimulationState& now) {
   if (before.particles.size() != now.particles.size())
     return fmt::format("there are {} particles, and were {}", now.particles.size(), before.particles.size());
-  const std::vector<std::uint32_t> order = order_by_id(now.particles.ids), then = order_by_id(before.particles.ids);
+  const std::vector<std::uint32_t> order = particles::order_by_id(now.particles.ids),
+                                   then = particles::order_by_id(before.particles.ids);
   for (std::size_t k = 0; k < order.size(); ++k) {
     const std::uint64_t id = before.particles.ids[then[k]];
     if (now.particles.ids[order[k]] != id)
@@ -156,8 +159,8 @@ std::string fault_of_particles(const SimulationState& before, const SimulationSt
   return {};
 }
 
-std::string fault_of_energy(const BeforeStep& before, const SimulationState& now, const ParticleMeans& means,
-                            const Frequencies& f) {
+std::string fault_of_energy(const BeforeStep& before, const simulation::SimulationState& now,
+                            const diagnostics::ParticleMeans& means, const Frequencies& f) {
   const double change = std::fabs(now.balance(means, f).residual - before.residual),
                scale = energy_scale(now, means, f);
   if (change <= allowed_residual_of_step * scale)
@@ -166,7 +169,7 @@ std::string fault_of_energy(const BeforeStep& before, const SimulationState& now
                      format_number(change / scale, 2), allowed_residual_of_step);
 }
 
-std::string fault_of_sums(const BeforeStep& before, const SimulationState& now, const Frequencies& f) {
+std::string fault_of_sums(const BeforeStep& before, const simulation::SimulationState& now, const Frequencies& f) {
   constexpr std::array<const char*, 6> names = {"m X", "m Y", "m e cos", "m e sin", "m i sin", "m i cos"};
   constexpr double tolerance = 1e-10; // over the summed magnitudes of single particles' changes
   constexpr double epsilon = std::numeric_limits<double>::epsilon(), roundings = 64.0;
@@ -174,8 +177,8 @@ std::string fault_of_sums(const BeforeStep& before, const SimulationState& now, 
   assert(before.kick_ticks.size() == now.forces.size());
   const CollisionalChange collisional_change(before, now, f);
   const ShearingBox& box = now.box;
-  const std::vector<std::uint32_t> order = order_by_id(now.particles.ids),
-                                   then = order_by_id(before.state.particles.ids);
+  const std::vector<std::uint32_t> order = particles::order_by_id(now.particles.ids),
+                                   then = particles::order_by_id(before.state.particles.ids);
   std::array<double, 6> sums{}, sizes{}, rounding{};
   bool displaced_far = false; // a collisional change could be mistaken for a wrap
   for (std::size_t k = 0; k < order.size(); ++k) {
@@ -219,7 +222,8 @@ double force_tolerance(const GravitySettings& settings) {
   }
 }
 
-std::string fault_of_forces(const Scene& scene, const Boundary& boundary, const SimulationState& state) {
+std::string fault_of_forces(const Scene& scene, const forces::Boundary& boundary,
+                            const simulation::SimulationState& state) {
   constexpr std::size_t sampled = 32;
   constexpr double one_ring_suffices = 1e-3; // the error of one ring, 3e-5 (docs/theory/gravity.md), is negligible then
   const double tolerance = scene.gravity ? force_tolerance(*scene.gravity) : 0.0;
@@ -229,7 +233,7 @@ std::string fault_of_forces(const Scene& scene, const Boundary& boundary, const 
   assert(state.forces.front().accelerations.size() == count);
   std::vector<Vec3> positions;
   std::vector<double> masses;
-  const GravityProblem problem = gravity_problem(boundary, scene.planet.orbital_frequency, positions, masses);
+  const gravity::GravityProblem problem = gravity_problem(boundary, scene.planet.orbital_frequency, positions, masses);
   RandomStream random(static_cast<std::uint64_t>(state.step), RandomPurpose::sample, 1);
   std::vector<std::size_t> sample;
   for (std::size_t k = 0; k < std::min(sampled, count); ++k)
@@ -237,11 +241,11 @@ std::string fault_of_forces(const Scene& scene, const Boundary& boundary, const 
   // solvers that sum over pairs are compared with two rings, so that their truncation of the images is tested too
   const bool pairs = scene.gravity->solver == GravitySettings::Solver::direct ||
                      scene.gravity->solver == GravitySettings::Solver::tree;
-  ImageSettings images = {.rings = pairs || tolerance < one_ring_suffices ? 2 : 1};
+  gravity::ImageSettings images = {.rings = pairs || tolerance < one_ring_suffices ? 2 : 1};
   if (pairs && !scene.gravity->images.far)
     images = scene.gravity->images;
   const std::vector<Vec3> exact =
-      sampled_accelerations(problem, sample, images, choose_instruction_set(), Precision::single_precision);
+      sampled_accelerations(problem, sample, images, choose_instruction_set(), gravity::Precision::single_precision);
   double errors = 0.0, squares = 0.0, worst = 0.0, mass = 0.0;
   std::size_t worst_at = sample.front();
   for (std::size_t k = 0; k < sample.size(); ++k) {
@@ -268,4 +272,4 @@ std::string fault_of_forces(const Scene& scene, const Boundary& boundary, const 
       format_number(forces_factor * tolerance, 2), forces_factor);
 }
 
-} // namespace keeler
+} // namespace keeler::runs

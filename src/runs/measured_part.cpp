@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::runs {
 namespace {
 
 constexpr double averaged_orbits = 1.0; // if no steady part was detected
@@ -36,4 +36,4 @@ MeasuredPart measured_part(const std::filesystem::path& path, const OrbitWindow&
   return {load_patches(path, std::max(0.0, last.time_orbits - since)), report};
 }
 
-} // namespace keeler
+} // namespace keeler::runs

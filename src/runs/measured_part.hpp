@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-namespace keeler {
+namespace keeler::runs {
 
 struct MeasuredPart {
   StoredPatches stored; ///< the snapshots in that part
@@ -18,4 +18,4 @@ struct MeasuredPart {
 /// Throws UsageError for a window of a snapshot file, or a window without snapshots; IoError.
 MeasuredPart measured_part(const std::filesystem::path& path, const OrbitWindow& window);
 
-} // namespace keeler
+} // namespace keeler::runs

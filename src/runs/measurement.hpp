@@ -8,15 +8,15 @@
 
 #include <functional>
 
-namespace keeler {
+namespace keeler::runs {
 
 /// Typed results. Rows of the table may also compute from the patches.
 struct Measurement {
   std::span<const Patch> patches;
-  Analysis analysis;
+  diagnostics::Analysis analysis;
   double largest_overlap = 0.0; ///< of any pair in any patch, as a fraction of the radius sum
   TransportReport transport;
-  PatchUnits units; ///< of the last patch
+  quantities::PatchUnits units; ///< of the last patch
 
   /// Returns the mean of a function of one snapshot over all snapshots. Precondition: `patches` is not empty.
   double mean_over_snapshots(double (*value)(const Patch&)) const;
@@ -25,15 +25,15 @@ struct Measurement {
 /// Measures patches, oldest first; the result refers to them, so they must outlive it. `patch_done` is called after
 /// each patch. Precondition: `patches` is not empty. Throws UsageError as analyze().
 Measurement measure(std::span<const Patch> patches, const TransportReport& transport,
-                    const AnalysisSettings& settings = {}, const std::function<void()>& patch_done = {});
+                    const diagnostics::AnalysisSettings& settings = {}, const std::function<void()>& patch_done = {});
 
 /// Returns all measured quantities as a record.
-Record record_of(const Measurement& measurement);
+quantities::Record record_of(const Measurement& measurement);
 
 /// Returns the wake quantities alone. Precondition: `patches` is not empty.
-Record wakes_of(std::span<const Patch> patches);
+quantities::Record wakes_of(std::span<const Patch> patches);
 
 /// Returns names, units and meanings, in the order of a record.
-std::vector<Quantity> measured_quantities();
+std::vector<quantities::Quantity> measured_quantities();
 
-} // namespace keeler
+} // namespace keeler::runs

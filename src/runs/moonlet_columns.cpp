@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace keeler {
+namespace keeler::runs {
 namespace {
 
 using Sampled = const MoonletSample&;
@@ -29,7 +29,7 @@ double guiding_y(Sampled s) {
 // Returns the momentum gained by gravity, or by all external forces.
 double gains(Sampled s, bool of_gravity) {
   double sum = 0.0;
-  for (const ForceState& force : s.simulation.state().forces)
+  for (const simulation::ForceState& force : s.simulation.state().forces)
     if ((force.name == "gravity") == of_gravity)
       sum += force.moonlet_gains[s.k];
   return sum;
@@ -79,4 +79,4 @@ std::vector<MoonletColumn> moonlet_columns_of(const Scene& scene) {
   return present;
 }
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::runs {
 
 /// One moonlet at one instant of a run, between two steps. The values of its columns are collective.
 struct MoonletSample {
@@ -19,7 +19,7 @@ struct MoonletSample {
   std::size_t k; ///< index of the moonlet
 
   Body body() const { return simulation.moonlet(k); }
-  const MoonletTrack& track() const {
+  const simulation::MoonletTrack& track() const {
     assert(k < simulation.state().moonlets.size());
     return simulation.state().moonlets[k];
   }
@@ -39,4 +39,4 @@ std::span<const MoonletColumn> moonlet_columns();
 /// Returns the columns that a scene has: none without moonlets.
 std::vector<MoonletColumn> moonlet_columns_of(const Scene& scene);
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -6,11 +6,11 @@
 
 #include <cassert>
 
-namespace keeler {
+namespace keeler::runs {
 
-PatchUnits units_of(const Patch& patch) {
+quantities::PatchUnits units_of(const Patch& patch) {
   assert(patch.size() > 0);
-  return {mean_radius(patch), patch.orbital_frequency, newton_g_si * surface_density(patch)};
+  return {diagnostics::mean_radius(patch), patch.orbital_frequency, newton_g_si * diagnostics::surface_density(patch)};
 }
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -4,9 +4,9 @@
 #include <keeler/particles/patch.hpp>
 #include <keeler/quantities/quantity.hpp>
 
-namespace keeler {
+namespace keeler::runs {
 
 /// Returns ⟨r⟩, Ω and G Σ. Precondition: the patch holds a particle.
-PatchUnits units_of(const Patch& patch);
+quantities::PatchUnits units_of(const Patch& patch);
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -26,29 +26,29 @@
 
 #include <fcntl.h>
 
-namespace keeler {
+namespace keeler::runs {
 namespace {
 
-constexpr ImageSettings exact_images{.rings = 2};
+constexpr gravity::ImageSettings exact_images{.rings = 2};
 
 // Returns the number of particles of a force check: fewer in a long box, where each exact sum has thousands of images.
-std::size_t checked_particles(const ShearingBox& box, const ImageSettings& images) {
+std::size_t checked_particles(const ShearingBox& box, const gravity::ImageSettings& images) {
   constexpr std::size_t max_count = 200, min_count = 8, images_of_square_box = 25;
   return std::clamp(max_count * images_of_square_box / near_image_count(box, images), min_count, max_count);
 }
 
-Series open_series(const std::filesystem::path& file, const std::vector<std::string>& columns, const Scene& scene,
-                   std::optional<std::int64_t> resumed_at) {
+io::Series open_series(const std::filesystem::path& file, const std::vector<std::string>& columns, const Scene& scene,
+                       std::optional<std::int64_t> resumed_at) {
   if (!resumed_at)
-    return Series::begin(file, columns);
+    return io::Series::begin(file, columns);
   const std::int64_t every = scene.output.series_every; // 0: only the row at the start
-  return Series::resume(file, columns, *resumed_at, every > 0 ? every : *resumed_at + 1);
+  return io::Series::resume(file, columns, *resumed_at, every > 0 ? every : *resumed_at + 1);
 }
 
 // Returns the columns of an existing series: one begun by an earlier version has fewer, and keeps them.
 std::vector<SeriesColumn> columns_to_continue(const std::filesystem::path& file,
                                               const std::vector<SeriesColumn>& columns) {
-  const std::vector<std::string> names = series_names(file);
+  const std::vector<std::string> names = io::series_names(file);
   std::vector<SeriesColumn> present;
   std::copy_if(columns.begin(), columns.end(), std::back_inserter(present), [&](const SeriesColumn& column) {
     return std::find(names.begin(), names.end(), column.name) != names.end();
@@ -69,7 +69,7 @@ void OutputCounters::list_fields(FieldTable& table, const Scene& scene) {
 Recorder::Recorder(const RunFolder& folder, const FolderLock* lock, const Scene& scene,
                    const std::vector<std::string>& arguments, OutputCounters counters,
                    std::optional<std::int64_t> resumed_at, Notice notice, const Communicator& ranks)
-    : folder_(folder), lock_(lock), ranks_(ranks), scene_(scene), provenance_(collect_provenance(arguments)),
+    : folder_(folder), lock_(lock), ranks_(ranks), scene_(scene), provenance_(io::collect_provenance(arguments)),
       counters_(std::move(counters)), notice_(std::move(notice)), columns_(series_columns_of(scene)),
       moonlet_columns_(moonlet_columns_of(scene)) {
   assert((lock != nullptr) == ranks.is_root());
@@ -86,7 +86,7 @@ void Recorder::open(std::optional<std::int64_t> resumed_at) {
       names.emplace_back(column.name);
     moonlets_.emplace(open_series(folder_.moonlets(), names, scene_, resumed_at));
   }
-  write_text(folder_.scene(), scene_.resolved);
+  files::write_text(folder_.scene(), scene_.resolved);
   if (!scene_.output.collisions)
     return;
   std::optional<LogResume> resume;
@@ -100,7 +100,7 @@ void Recorder::notify(const std::string& text) const {
     notice_(text);
 }
 
-void Recorder::report_restored(Series& series, const std::filesystem::path& file) {
+void Recorder::report_restored(io::Series& series, const std::filesystem::path& file) {
   if (!series.take_restored())
     return;
   write_log("restored", {{"file", file.filename().string()}});
@@ -116,12 +116,12 @@ void Recorder::report_restored() {
     report_restored(contact_log_->speeds(), folder_.impact_speeds());
 }
 
-void Recorder::report_lost_rows(const Series& series, const std::filesystem::path& file) {
+void Recorder::report_lost_rows(const io::Series& series, const std::filesystem::path& file) {
   if (series.gaps().empty())
     return;
-  const SeriesGap first = series.gaps().front();
+  const io::SeriesGap first = series.gaps().front();
   const std::size_t others = series.gaps().size() - 1;
-  for (const SeriesGap& gap : series.gaps())
+  for (const io::SeriesGap& gap : series.gaps())
     write_log("rows lost", {{"file", file.filename().string()}, {"from_step", gap.from}, {"to_step", gap.to}});
   notify(fmt::format("the rows of '{}' from step {} to {}{} are missing; the file continues without them",
                      file.string(), first.from, first.to,
@@ -159,7 +159,7 @@ void Recorder::contacts() {
   ranks_.on_root([&] { contact_log_->write_full_files(); });
 }
 
-void Recorder::require_sound(const SimulationState& state, const ParticleMeans& means) {
+void Recorder::require_sound(const simulation::SimulationState& state, const diagnostics::ParticleMeans& means) {
   ranks_.together([&] {
     if (const std::string fault = fault_of_budget(state, means, scene_.planet.frequencies); !fault.empty())
       throw InvariantError(fault);
@@ -176,12 +176,12 @@ void Recorder::require_sound(const Simulation& simulation) {
 void Recorder::snapshot(const Simulation& simulation) {
   const Stopwatch watch(costs_.snapshots);
   require_sound(simulation);
-  std::optional<SnapshotFile> file;
+  std::optional<io::SnapshotFile> file;
   ranks_.on_root([&] {
     file.emplace(folder_.snapshot(counters_.snapshots), simulation.frame(), simulation.count(),
-                 simulation.state().particles.rough, SnapshotMeta{scene_.resolved, provenance_});
+                 simulation.state().particles.rough, io::SnapshotMeta{scene_.resolved, provenance_});
   });
-  simulation.visit_patch(SnapshotFile::piece, [&](const Patch& piece) { file->add(piece); });
+  simulation.visit_patch(io::SnapshotFile::piece, [&](const Patch& piece) { file->add(piece); });
   ranks_.on_root([&] {
     file->finish();
     if (contact_log_)
@@ -214,18 +214,18 @@ void Recorder::checkpoint(const Simulation& simulation) {
   FieldTable table = simulation.state().fields();
   counters.list_fields(table, scene_);
   assert(counters.checkpoints > 0 && counters.snapshots >= 0);
-  const std::filesystem::path file = checkpoint_path(folder_.path(), counters_.checkpoints);
-  write_checkpoint(file, table, {scene_.resolved, provenance_}, ranks_);
+  const std::filesystem::path file = io::checkpoint_path(folder_.path(), counters_.checkpoints);
+  io::write_checkpoint(file, table, {scene_.resolved, provenance_}, ranks_);
   ranks_.on_root([&] {
     lock_->require_in_place();
-    remove_later_checkpoints(file);
-    prune_checkpoints(file);
+    io::remove_later_checkpoints(file);
+    io::prune_checkpoints(file);
   });
   counters_ = counters;
 }
 
 void Recorder::sample(const Simulation& simulation) {
-  const std::optional<GravityEnergy> gravity = measure_gravity(simulation);
+  const std::optional<gravity::GravityEnergy> gravity = measure_gravity(simulation);
   const Stopwatch watch(costs_.series);
   const SeriesSample row(scene_, simulation, gravity);
   require_sound(simulation.state(), row.means);
@@ -248,7 +248,7 @@ void Recorder::append(const SeriesSample& row, const std::vector<std::vector<dou
 
 // Measures in the first row at or after each multiple of stress_every. The schedule depends on the step alone, so
 // restarts do not change it.
-std::optional<GravityEnergy> Recorder::measure_gravity(const Simulation& simulation) {
+std::optional<gravity::GravityEnergy> Recorder::measure_gravity(const Simulation& simulation) {
   const std::int64_t step = simulation.state().step, every = scene_.output.stress_every;
   if (!measures_gravity(scene_) || (step > 0 && step / every == (step - scene_.output.series_every) / every))
     return std::nullopt;
@@ -264,12 +264,14 @@ void Recorder::check_forces(const Simulation& simulation) {
     const Stopwatch watch(c.last_s);
     std::vector<Vec3> positions;
     std::vector<double> masses;
-    const GravityProblem problem =
+    const gravity::GravityProblem problem =
         gravity_problem(simulation.boundary(), scene_.planet.orbital_frequency, positions, masses);
-    const ForceSample sample = draw_force_sample(problem, checked_particles(problem.box, exact_images), 0, 0.0);
+    const diagnostics::ForceSample sample =
+        diagnostics::draw_force_sample(problem, checked_particles(problem.box, exact_images), 0, 0.0);
     const std::vector<Vec3> exact =
         sampled_accelerations(problem, sample.targets, exact_images, choose_instruction_set());
-    const ForceErrors errors = force_errors(sample, exact, simulation.state().forces.front().accelerations);
+    const diagnostics::ForceErrors errors =
+        force_errors(sample, exact, simulation.state().forces.front().accelerations);
     ++c.count;
     c.particles = sample.uniform;
     c.last_step = simulation.state().step;
@@ -280,8 +282,8 @@ void Recorder::check_forces(const Simulation& simulation) {
   c.seconds += c.last_s;
 }
 
-void Recorder::summary(const Record& summary) {
-  ranks_.on_root([&] { write_text(folder_.summary(), json_text(json_of(summary), 2) + "\n"); });
+void Recorder::summary(const quantities::Record& summary) {
+  ranks_.on_root([&] { files::write_text(folder_.summary(), json_text(json_of(summary), 2) + "\n"); });
 }
 
 void Recorder::log(const std::string& event, const nlohmann::ordered_json& details) {
@@ -294,12 +296,12 @@ void Recorder::write_log(const std::string& event, const nlohmann::ordered_json&
   nlohmann::ordered_json line;
   line["event"] = event;
   line.update(details);
-  line["time"] = utc_now();
+  line["time"] = io::utc_now();
   const std::string text = json_text(line) + "\n";
-  Descriptor file(folder_.log(), O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW);
+  files::Descriptor file(folder_.log(), O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW);
   lock_->require_in_place();
   file.append_whole(std::as_bytes(std::span(text)));
   file.close();
 }
 
-} // namespace keeler
+} // namespace keeler::runs

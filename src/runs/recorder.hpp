@@ -21,7 +21,7 @@
 #include <optional>
 #include <string>
 
-namespace keeler {
+namespace keeler::runs {
 
 /// Counters of the files written; stored in the checkpoint, so that a resumed run continues them.
 struct OutputCounters {
@@ -81,9 +81,9 @@ public:
   void log(const std::string& event, const nlohmann::ordered_json& details);
   /// Appends an event to the log. Precondition: this is the root.
   void write_log(const std::string& event, const nlohmann::ordered_json& details);
-  void summary(const Record& summary);
+  void summary(const quantities::Record& summary);
   const OutputCounters& counters() const { return counters_; }
-  const Provenance& provenance() const { return provenance_; }
+  const io::Provenance& provenance() const { return provenance_; }
   const ForceChecks& force_checks() const { return force_checks_; }
   const OutputCosts& costs() const { return costs_; }
 
@@ -91,31 +91,31 @@ private:
   void open(std::optional<std::int64_t> resumed_at);
   void append(const SeriesSample& row, const std::vector<std::vector<double>>& moonlets);
   void report_losses_on_root();
-  std::optional<GravityEnergy> measure_gravity(const Simulation& simulation);
-  void require_sound(const SimulationState& state, const ParticleMeans& means);
+  std::optional<gravity::GravityEnergy> measure_gravity(const Simulation& simulation);
+  void require_sound(const simulation::SimulationState& state, const diagnostics::ParticleMeans& means);
   void require_sound(const Simulation& simulation);
   void notify(const std::string& text) const;
-  void report_restored(Series& series, const std::filesystem::path& file);
+  void report_restored(io::Series& series, const std::filesystem::path& file);
   void report_restored();
-  void report_lost_rows(const Series& series, const std::filesystem::path& file);
+  void report_lost_rows(const io::Series& series, const std::filesystem::path& file);
 
   RunFolder folder_;
   const FolderLock* lock_;
   Communicator ranks_;
-  NamingGuard guard_{[this] {
+  files::NamingGuard guard_{[this] {
     if (lock_)
       lock_->require_in_place();
   }};
   const Scene& scene_;
-  Provenance provenance_;
+  io::Provenance provenance_;
   OutputCounters counters_;
   Notice notice_;
   std::vector<SeriesColumn> columns_;
-  std::optional<Series> series_; // on the root
+  std::optional<io::Series> series_; // on the root
   std::vector<MoonletColumn> moonlet_columns_;
-  std::optional<Series> moonlets_;               // on the root, if the scene has moonlets
-  std::optional<ContactLog> contact_log_;        // on the root, which receives the other ranks' contacts
-  struct RecordRequester final : DriftObserver { // for the other ranks: their contacts are sent to the root
+  std::optional<io::Series> moonlets_;                      // on the root, if the scene has moonlets
+  std::optional<ContactLog> contact_log_;                   // on the root, which receives the other ranks' contacts
+  struct RecordRequester final : collision::DriftObserver { // for the other ranks: their contacts are sent to the root
     bool wants_events() const override { return false; }
     bool wants_records() const override { return true; }
   } record_requester_;
@@ -124,4 +124,4 @@ private:
   OutputCosts costs_;
 };
 
-} // namespace keeler
+} // namespace keeler::runs

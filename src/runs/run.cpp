@@ -29,7 +29,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::runs {
 namespace {
 
 // Returns `steps` rounded to whole kick intervals, at least one.
@@ -49,7 +49,7 @@ template<class Work> RunResult with_advice(const RunOptions& options, const Work
   try {
     return work();
   } catch (const DiskFullError& full) {
-    const std::string advice = list_checkpoints(options.folder).empty()
+    const std::string advice = io::list_checkpoints(options.folder).empty()
                                    ? "start again with --force (there is no checkpoint yet)"
                                    : fmt::format("continue with \"{}\"", resume_command(options));
     throw DiskFullError(fmt::format("{}; free some space, then {}", full.what(), advice));
@@ -127,10 +127,10 @@ struct Loaded {
 // Loads a checkpoint. Collective: each rank gets a part of the particles.
 Loaded load(const std::filesystem::path& file, const Communicator& ranks = {}) {
   Loaded loaded;
-  const Checkpoint checkpoint(file, ranks);
+  const io::Checkpoint checkpoint(file, ranks);
   loaded.scene_text = checkpoint.header().scene;
-  ranks.together([&] { loaded.run.scene = parse_stored_scene(loaded.scene_text, file.string()); });
-  loaded.run.state = SimulationState(loaded.run.scene);
+  ranks.together([&] { loaded.run.scene = scene::parse_stored_scene(loaded.scene_text, file.string()); });
+  loaded.run.state = simulation::SimulationState(loaded.run.scene);
   FieldTable table = loaded.run.state.fields();
   loaded.counters.list_fields(table, loaded.run.scene);
   checkpoint.read(table);
@@ -164,7 +164,7 @@ Scene until(Scene scene, const RunOptions& options, std::int64_t step) {
 struct Begun {
   Scene scene; // with the settings that depend on the initial state
   Simulation simulation;
-  PatchScale scale;
+  scene::PatchScale scale;
 };
 
 // Makes the initial state. A stop request ends it at once, since no result could be kept; distributed ranks check for
@@ -172,7 +172,7 @@ struct Begun {
 Begun first_simulation(const Scene& scene, const RunOptions& options, const RunRequests& requests) {
   const Communicator& ranks = options.ranks;
   const std::atomic<bool> never = false;
-  const auto progress = [&](const StartProgress& now) {
+  const auto progress = [&](const initial_conditions::StartProgress& now) {
     if (ranks.any(requests.stop))
       throw Interrupted();
     if (options.start_progress)
@@ -181,9 +181,10 @@ Begun first_simulation(const Scene& scene, const RunOptions& options, const RunR
   try {
     const Interruptible start(ranks.distributed() ? never : requests.stop);
     if (!scene.start_from)
-      ranks.together([&] { require_memory_for(scene, (scene.particles.count + ranks.size() - 1) / ranks.size()); });
+      ranks.together(
+          [&] { advice::require_memory_for(scene, (scene.particles.count + ranks.size() - 1) / ranks.size()); });
     const Patch patch = initial_patch(scene, progress, ranks);
-    const PatchScale scale = ranks.broadcast(scale_of(patch, ranks));
+    const scene::PatchScale scale = ranks.broadcast(initial_conditions::scale_of(patch, ranks));
     const Scene decided = decided_by(scene, scale);
     return {decided, Simulation(decided, patch, ranks), scale};
   } catch (const Interrupted&) {
@@ -212,12 +213,12 @@ void refuse_distributed_checks(const RunOptions& options) {
   });
 }
 
-void send_notices(const Scene& scene, const RunOptions& options, const PatchScale& scale) {
+void send_notices(const Scene& scene, const RunOptions& options, const scene::PatchScale& scale) {
   if (!options.notice)
     return;
   for (const std::string& notice : scene.notices)
     options.notice(notice);
-  for (const std::string& warning : warnings(scene, scale))
+  for (const std::string& warning : advice::warnings(scene, scale))
     options.notice("note: " + warning);
 }
 
@@ -227,7 +228,7 @@ RunResult begin(const Scene& asked, const RunOptions& options, RunRequests& requ
   const RunFolder folder(options.folder);
   require_same_run(asked, options);
   refuse_distributed_checks(options);
-  ranks.on_root([&] { require_start_file(asked); });
+  ranks.on_root([&] { initial_conditions::require_start_file(asked); });
   require_distributable_start(asked, options);
   ranks.on_root([&] {
     if (!options.force)
@@ -259,7 +260,7 @@ RunResult begin(const Scene& asked, const RunOptions& options, RunRequests& requ
 std::filesystem::path newest_checkpoint(const RunOptions& options) {
   std::string name;
   options.ranks.on_root([&] {
-    const NewestCheckpoint newest = newest_valid_checkpoint(options.folder);
+    const io::NewestCheckpoint newest = io::newest_valid_checkpoint(options.folder);
     if (options.notice)
       for (const std::string& warning : newest.warnings)
         options.notice(warning);
@@ -309,7 +310,7 @@ RunResult resume(const RunOptions& options, RunRequests& requests) {
     report_edited_scene(folder, scene, loaded, options, true);
     folder.cut_snapshots(loaded.counters.snapshots);
     folder.remove_summary();
-    prune_checkpoints(newest);
+    io::prune_checkpoints(newest);
   });
   Recorder recorder(folder, lock ? &*lock : nullptr, scene, options.arguments, loaded.counters, step, options.notice,
                     ranks);
@@ -339,11 +340,11 @@ StoredRun load_newest_checkpoint(const std::filesystem::path& folder,
   return std::move(loaded.run);
 }
 
-void store_checkpoint(const std::filesystem::path& file, const SimulationState& state, const Scene& scene) {
+void store_checkpoint(const std::filesystem::path& file, const simulation::SimulationState& state, const Scene& scene) {
   OutputCounters counters;
   FieldTable table = state.fields();
   counters.list_fields(table, scene);
-  write_checkpoint(file, table, {scene.resolved, collect_provenance({})});
+  io::write_checkpoint(file, table, {scene.resolved, io::collect_provenance({})});
 }
 
 RunResult start_run(const Scene& scene, const RunOptions& options, RunRequests& requests) {
@@ -354,4 +355,4 @@ RunResult resume_run(const RunOptions& options, RunRequests& requests) {
   return with_advice(options, [&] { return resume(options, requests); });
 }
 
-} // namespace keeler
+} // namespace keeler::runs

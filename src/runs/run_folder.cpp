@@ -9,7 +9,7 @@
 #include <cassert>
 #include <string_view>
 
-namespace keeler {
+namespace keeler::runs {
 namespace fs = std::filesystem;
 namespace {
 
@@ -69,7 +69,7 @@ void RunFolder::require_writable() const {
   std::error_code unknown;
   while (!fs::exists(nearest, unknown) && nearest != nearest.parent_path())
     nearest = nearest.parent_path();
-  require_writable_folder(nearest, path_);
+  files::require_writable_folder(nearest, path_);
 }
 
 void RunFolder::make() const {
@@ -86,7 +86,7 @@ void RunFolder::claim(bool force) const {
     for (const fs::directory_entry& entry : fs::directory_iterator(path_))
       if (is_run_file(entry.path().filename().string()))
         fs::remove(entry.path());
-    remove_left_overs(path_, is_run_file);
+    files::remove_left_overs(path_, is_run_file);
   } catch (const fs::filesystem_error& error) {
     throw IoError(fmt::format("cannot empty the folder '{}': {}", path_.string(), error.code().message()));
   }
@@ -110,9 +110,9 @@ void RunFolder::cut_log() const {
   std::error_code unknown;
   if (!fs::exists(log(), unknown))
     return;
-  const std::string text = read_text(log());
+  const std::string text = files::read_text(log());
   if (!text.empty() && text.back() != '\n')
-    write_text(log(), std::string_view(text).substr(0, text.rfind('\n') + 1));
+    files::write_text(log(), std::string_view(text).substr(0, text.rfind('\n') + 1));
 }
 
 void RunFolder::remove_summary() const {
@@ -122,4 +122,4 @@ void RunFolder::remove_summary() const {
     throw IoError(fmt::format("cannot remove '{}': {}", summary().string(), error.message()));
 }
 
-} // namespace keeler
+} // namespace keeler::runs

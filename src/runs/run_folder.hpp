@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string_view>
 
-namespace keeler {
+namespace keeler::runs {
 
 class RunFolder {
 public:
@@ -58,4 +58,4 @@ private:
   std::filesystem::path path_;
 };
 
-} // namespace keeler
+} // namespace keeler::runs

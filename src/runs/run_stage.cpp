@@ -14,7 +14,7 @@
 
 #include <fcntl.h>
 
-namespace keeler {
+namespace keeler::runs {
 namespace {
 
 constexpr std::size_t max_row = 4096; // bytes, more than any row has
@@ -22,7 +22,7 @@ constexpr std::size_t max_row = 4096; // bytes, more than any row has
 // Returns the end of a text file, with at least one complete line if the file has any; empty if it cannot be read.
 std::string tail_of(const std::filesystem::path& file) {
   try {
-    const Descriptor opened(file, O_RDONLY);
+    const files::Descriptor opened(file, O_RDONLY);
     const std::size_t size = opened.size(), length = std::min(size, 2 * max_row);
     std::string tail(length, '\0');
     tail.resize(opened.read_at(size - length, std::as_writable_bytes(std::span(tail))));
@@ -40,7 +40,7 @@ RunStage run_stage(const std::filesystem::path& folder) {
     return RunStage::absent;
   if (says_finished(folder))
     return RunStage::finished;
-  return list_checkpoints(folder).empty() ? RunStage::begun : RunStage::resumable;
+  return io::list_checkpoints(folder).empty() ? RunStage::begun : RunStage::resumable;
 }
 
 std::int64_t last_recorded_step(const std::filesystem::path& folder) {
@@ -55,4 +55,4 @@ std::int64_t last_recorded_step(const std::filesystem::path& folder) {
   return step;
 }
 
-} // namespace keeler
+} // namespace keeler::runs

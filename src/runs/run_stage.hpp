@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 
-namespace keeler {
+namespace keeler::runs {
 
 enum class RunStage {
   absent,    ///< the folder is missing or empty
@@ -19,4 +19,4 @@ RunStage run_stage(const std::filesystem::path& folder);
 /// Returns the step of the last complete row of the series; 0 without one.
 std::int64_t last_recorded_step(const std::filesystem::path& folder);
 
-} // namespace keeler
+} // namespace keeler::runs

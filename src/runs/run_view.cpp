@@ -14,7 +14,7 @@
 #include <ctime>
 #include <sstream>
 
-namespace keeler {
+namespace keeler::runs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -60,7 +60,7 @@ void apply_event(RunView& view, const nlohmann::json& line) {
 
 // Reads all events; incomplete lines and lines that are not JSON objects are skipped.
 void read_log(RunView& view, const fs::path& file) {
-  std::istringstream lines(read_lines(file));
+  std::istringstream lines(files::read_lines(file));
   for (std::string text; std::getline(lines, text);) {
     const nlohmann::json line = json_of<nlohmann::json>(text);
     if (line.is_object())
@@ -115,7 +115,7 @@ RunView view_run(const fs::path& path) {
   view.running = folder_is_held(path);
   read_log(view, folder.log());
   if (fs::exists(folder.series()))
-    view.series = read_series(folder.series());
+    view.series = io::read_series(folder.series());
   if (const std::vector<double>* times = view.series.find("time_orbits"); times && !times->empty())
     view.orbits = times->back();
   view.snapshot = newest_name(path, "snap_", ".hdf");
@@ -124,4 +124,4 @@ RunView view_run(const fs::path& path) {
   return view;
 }
 
-} // namespace keeler
+} // namespace keeler::runs

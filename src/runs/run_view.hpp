@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-namespace keeler {
+namespace keeler::runs {
 
 struct RunView {
   bool running = false;                      ///< a process holds the folder
@@ -20,7 +20,7 @@ struct RunView {
   std::optional<double> began_s;             ///< time of that start or resume, s since 1970
   bool end_missing = false;                  ///< the log has no end of that command
   std::optional<double> ended_s = 0.0;       ///< wall time of the ended commands; none if one was killed
-  SeriesTable series;                        ///< rows written so far
+  io::SeriesTable series;                    ///< rows written so far
   std::string snapshot, checkpoint, picture; ///< names of the newest files; empty if there is none
 
   double completed_fraction() const; ///< of the whole run, 0 … 1
@@ -35,4 +35,4 @@ struct RunView {
 /// Throws IoError when the folder holds no run, or one of its files cannot be read.
 RunView view_run(const std::filesystem::path& folder);
 
-} // namespace keeler
+} // namespace keeler::runs

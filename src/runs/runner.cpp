@@ -10,7 +10,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::runs {
 namespace {
 
 constexpr double first_check = 5e-6;         // s per particle: assumed cost of the first force check
@@ -22,7 +22,7 @@ constexpr double min_stop_timeout = 5.0;     // s
 Runner::Runner(const Scene& scene, const RunOptions& options, RunRequests& requests, Simulation& simulation,
                Recorder& recorder, const Stopwatch& watch, std::int64_t last_checkpoint)
     : scene_(scene), options_(options), requests_(requests), simulation_(simulation), recorder_(recorder),
-      watch_(watch), passage_(unresolved_passage(scene, simulation.orbits(), end_orbits(scene))),
+      watch_(watch), passage_(advice::unresolved_passage(scene, simulation.orbits(), end_orbits(scene))),
       first_step_(simulation.state().step), last_checkpoint_(last_checkpoint),
       first_collisions_(simulation.state().collisions.fast + simulation.state().collisions.slow) {
   requests_.stop_timeout_s = stop_timeout();
@@ -33,7 +33,7 @@ Runner::Runner(const Scene& scene, const RunOptions& options, RunRequests& reque
 }
 
 RunResult Runner::run() {
-  const SimulationState& state = simulation_.state();
+  const simulation::SimulationState& state = simulation_.state();
   while (state.step < scene_.time.end_step && !must_stop()) {
     advance();
     record();
@@ -77,8 +77,8 @@ void Runner::report_passage() {
     return;
   recorder_.log("satellite passage", {{"orbits", passage_->orbits}, {"drag", passage_->drag}});
   if (options_.notice)
-    options_.notice(fmt::format("note: {}", in_words(*passage_)));
-  passage_ = unresolved_passage(scene_, passage_->orbits + next, end_orbits(scene_));
+    options_.notice(fmt::format("note: {}", advice::in_words(*passage_)));
+  passage_ = advice::unresolved_passage(scene_, passage_->orbits + next, end_orbits(scene_));
 }
 
 void Runner::record() {
@@ -140,7 +140,7 @@ void Runner::report() {
   last_time_ = now;
   if (!options_.progress)
     return;
-  const SimulationState& state = simulation_.state();
+  const simulation::SimulationState& state = simulation_.state();
   RunProgress p;
   p.step = state.step, p.first_step = first_step_, p.end_step = scene_.time.end_step;
   p.orbits = simulation_.orbits(), p.end_orbits = end_orbits(scene_);
@@ -151,4 +151,4 @@ void Runner::report() {
   options_.progress(p);
 }
 
-} // namespace keeler
+} // namespace keeler::runs

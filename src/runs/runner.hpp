@@ -10,7 +10,7 @@
 
 #include <optional>
 
-namespace keeler {
+namespace keeler::runs {
 
 /// Returns the end of a run, in orbits.
 inline double end_orbits(const Scene& scene) {
@@ -59,7 +59,7 @@ private:
   Recorder& recorder_;
   const Stopwatch& watch_; // since the command began
   std::optional<StepCheck> check_;
-  std::optional<SatellitePassage> passage_; // the next one that the box cannot represent well
+  std::optional<forces::SatellitePassage> passage_; // the next one that the box cannot represent well
   std::int64_t first_step_, last_checkpoint_;
   std::uint64_t first_collisions_;
   std::int64_t cost_step_ = first_step_;
@@ -67,4 +67,4 @@ private:
   double start_ = watch_.elapsed(), last_time_ = start_, last_checkpoint_time_ = start_, longest_step_s_ = 0.0;
 };
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -11,7 +11,7 @@
 #include <limits>
 #include <string_view>
 
-namespace keeler {
+namespace keeler::runs {
 namespace {
 
 using Sample = const SeriesSample&;
@@ -28,13 +28,13 @@ double flux(Sample s, double internal) { // from kg m² rad⁻¹ to kg m² s⁻�
   return internal * s.scene.planet.orbital_frequency;
 }
 
-const SimulationState& state(Sample s) {
+const simulation::SimulationState& state(Sample s) {
   return s.simulation.state();
 }
 
 // An exact finder lets no overlap exceed the initial one, and the search for it would cost more than all other columns.
 bool may_overlap(const Scene& scene) {
-  return !make_finder(scene.collisions.finder)->exact();
+  return !finders::make_finder(scene.collisions.finder)->exact();
 }
 
 bool has_spins(const Scene& scene) {
@@ -45,9 +45,9 @@ bool carries(const Scene& scene) {
   return scene.gravity && scene.gravity->carries();
 }
 
-std::optional<EpicyclicWaves> waves_in(const Simulation& simulation, const ParticleMeans& means,
-                                       const Frequencies& frequencies) {
-  const SimulationState& now = simulation.state();
+std::optional<diagnostics::EpicyclicWaves>
+waves_in(const Simulation& simulation, const diagnostics::ParticleMeans& means, const Frequencies& frequencies) {
+  const simulation::SimulationState& now = simulation.state();
   return epicyclic_waves(now.particles, now.box.size_x, frequencies, -0.5 * now.step_length, means, simulation.ranks());
 }
 
@@ -136,7 +136,7 @@ const SeriesColumn all_columns[] = {
      [](const Scene& scene) { return scene.time.automatic; }},
     {"largest_overlap", "r_i + r_j", "Largest overlap of a pair: overlap", ColumnKind::value,
      "largest overlap of any pair; only with a finder other than `certified`, which prevents overlaps",
-     [](Sample s) { return largest_overlap(s.simulation.patch()).depth; }, may_overlap},
+     [](Sample s) { return cells::largest_overlap(s.simulation.patch()).depth; }, may_overlap},
     {"epicyclic_wave_fraction", "1", "Fraction of the epicyclic energy in box-long waves: axisymmetric waves",
      ColumnKind::value,
      "fraction of ⟨½κ²e²⟩ about the mean motion in axisymmetric waves as long as the box (modes 1 to 4 over the "
@@ -156,7 +156,7 @@ Registry<SeriesColumn>& registered_columns() {
 } // namespace
 
 SeriesSample::SeriesSample(const Scene& of_scene, const Simulation& of_simulation,
-                           std::optional<GravityEnergy> of_gravity)
+                           std::optional<gravity::GravityEnergy> of_gravity)
     : scene(of_scene), simulation(of_simulation), means(of_simulation.means()), balance(of_simulation.balance(means)),
       waves(waves_in(of_simulation, means, of_scene.planet.frequencies)), gravity(of_gravity) {}
 
@@ -170,10 +170,10 @@ const std::vector<SeriesColumn>& series_columns() {
   return registered_columns().entries();
 }
 
-std::vector<Quantity> series_quantities() {
-  std::vector<Quantity> all;
+std::vector<quantities::Quantity> series_quantities() {
+  std::vector<quantities::Quantity> all;
   for (const SeriesColumn& column : series_columns())
-    all.push_back({column.name, unit::unnamed(column.unit), column.name, column.meaning});
+    all.push_back({column.name, quantities::unit::unnamed(column.unit), column.name, column.meaning});
   return all;
 }
 
@@ -202,4 +202,4 @@ std::vector<double> values_of(std::span<const SeriesColumn> columns, const Serie
   return values;
 }
 
-} // namespace keeler
+} // namespace keeler::runs

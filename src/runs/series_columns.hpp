@@ -14,20 +14,20 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::runs {
 
 /// One instant of a run, between two steps, with the means over its particles that several columns need.
 struct SeriesSample {
   const Scene& scene;
   const Simulation& simulation;
-  ParticleMeans means;
-  EnergyBalance balance;
-  std::optional<EpicyclicWaves> waves;  ///< none: too few particles
-  std::optional<GravityEnergy> gravity; ///< none: not measured at this instant
+  diagnostics::ParticleMeans means;
+  simulation::EnergyBalance balance;
+  std::optional<diagnostics::EpicyclicWaves> waves; ///< none: too few particles
+  std::optional<gravity::GravityEnergy> gravity;    ///< none: not measured at this instant
 
   /// Both must outlive the sample. Collective.
   SeriesSample(const Scene& of_scene, const Simulation& of_simulation,
-               std::optional<GravityEnergy> of_gravity = std::nullopt);
+               std::optional<gravity::GravityEnergy> of_gravity = std::nullopt);
 };
 
 /// What a column holds: an instantaneous value; a sum or a count of events since the run began; the time integral of a
@@ -50,7 +50,7 @@ struct SeriesColumn {
 const std::vector<SeriesColumn>& series_columns();
 
 /// Returns the names, units and meanings of all columns.
-std::vector<Quantity> series_quantities();
+std::vector<quantities::Quantity> series_quantities();
 
 /// Returns the columns that a scene has.
 std::vector<SeriesColumn> series_columns_of(const Scene& scene);
@@ -61,4 +61,4 @@ bool measures_gravity(const Scene& scene);
 std::vector<std::string> names_of(std::span<const SeriesColumn> columns);
 std::vector<double> values_of(std::span<const SeriesColumn> columns, const SeriesSample& sample);
 
-} // namespace keeler
+} // namespace keeler::runs

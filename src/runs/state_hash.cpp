@@ -6,12 +6,12 @@
 #include <cassert>
 #include <span>
 
-namespace keeler {
+namespace keeler::runs {
 
-std::string state_hash(const SimulationState& state, const Scene& scene, const Communicator& ranks) {
+std::string state_hash(const simulation::SimulationState& state, const Scene& scene, const Communicator& ranks) {
   constexpr std::size_t rows = std::size_t{1} << 16;
   assert(!state.particles.rough || state.particles.spins.size() == state.particles.size());
-  Hash hash;
+  io::Hash hash;
   visit_by_id(state.particles, ranks, rows, [&](const Particles& particles) {
     for (std::size_t k = 0; k < particles.size(); ++k) {
       hash.add(particles.ids[k]);
@@ -31,4 +31,4 @@ std::string state_hash(const SimulationState& state, const Scene& scene, const C
   return digits;
 }
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -8,12 +8,12 @@
 
 #include <string>
 
-namespace keeler {
+namespace keeler::runs {
 
 /// Returns a hash of 32 hexadecimal digits over the particles' elements, radii and masses (in the order of their ids),
 /// the step number and length, the box with its shear offset, the seed, and the scene's keys that change the physics;
 /// not over end time, schedules, threads, memory order, counters or provenance. Collective: every rank gets the hash of
 /// the particles of all ranks.
-std::string state_hash(const SimulationState& state, const Scene& scene, const Communicator& ranks = {});
+std::string state_hash(const simulation::SimulationState& state, const Scene& scene, const Communicator& ranks = {});
 
-} // namespace keeler
+} // namespace keeler::runs

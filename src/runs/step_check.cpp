@@ -6,7 +6,7 @@
 
 #include <cassert>
 
-namespace keeler {
+namespace keeler::runs {
 namespace {
 
 void require(const char* invariant, const std::string& fault) {
@@ -26,7 +26,7 @@ StepCheck::~StepCheck() {
 
 void StepCheck::end() const {
   assert(before_ && before_->state.step < simulation_.state().step);
-  const SimulationState& now = simulation_.state();
+  const simulation::SimulationState& now = simulation_.state();
   const Frequencies& f = scene_.planet.frequencies;
   const bool kicked = !now.forces.empty() && now.step % before_->kick_ticks.front() == 0;
   require("finite numbers", fault_of_numbers(now));
@@ -39,4 +39,4 @@ void StepCheck::end() const {
     require("forces", fault_of_forces(scene_, simulation_.boundary(), now));
 }
 
-} // namespace keeler
+} // namespace keeler::runs

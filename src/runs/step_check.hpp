@@ -5,7 +5,7 @@
 
 #include <optional>
 
-namespace keeler {
+namespace keeler::runs {
 
 class StepCheck {
 public:
@@ -25,8 +25,8 @@ public:
 private:
   const Scene& scene_;
   Simulation& simulation_;
-  NeighbourAudit audit_;
+  collision::NeighbourAudit audit_;
   std::optional<BeforeStep> before_;
 };
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace keeler {
+namespace keeler::runs {
 namespace fs = std::filesystem;
 namespace {
 
@@ -25,16 +25,16 @@ bool earlier(const fs::path& a, const fs::path& b) {
 
 constexpr double time_rounding = 1.0 + 1e-9; // factor on times in orbits
 
-Snapshot load_snapshot(const fs::path& file) {
-  Snapshot snapshot = read_snapshot(file);
-  require_possible(snapshot.patch, file.string());
+io::Snapshot load_snapshot(const fs::path& file) {
+  io::Snapshot snapshot = io::read_snapshot(file);
+  initial_conditions::require_possible(snapshot.patch, file.string());
   return snapshot;
 }
 
 // Appends a snapshot. The first one determines the scene.
-void append(StoredPatches& stored, Snapshot snapshot, const fs::path& file) {
+void append(StoredPatches& stored, io::Snapshot snapshot, const fs::path& file) {
   if (stored.patches.empty()) {
-    const Scene scene = parse_stored_scene(snapshot.meta.scene, file.string());
+    const Scene scene = scene::parse_stored_scene(snapshot.meta.scene, file.string());
     stored.title = scene.title;
     stored.gravity = scene.gravity;
     stored.driven = !scene.external_forces.empty();
@@ -69,7 +69,7 @@ StoredPatches load_patches(const fs::path& path, double orbits) {
   const std::vector<fs::path> files = fs::is_directory(path) ? snapshots_in(path) : std::vector<fs::path>{path};
   StoredPatches stored;
   for (auto file = files.rbegin(); file != files.rend(); ++file) {
-    Snapshot snapshot = load_snapshot(*file);
+    io::Snapshot snapshot = load_snapshot(*file);
     if (!stored.patches.empty() &&
         snapshot.patch.time_orbits < stored.patches.back().time_orbits - orbits * time_rounding)
       break;
@@ -82,7 +82,7 @@ StoredPatches load_patches(const fs::path& path, double orbits) {
 StoredPatches load_patches_between(const fs::path& folder, double since, double until) {
   StoredPatches stored;
   for (const fs::path& file : snapshots_in(folder)) {
-    Snapshot snapshot = load_snapshot(file);
+    io::Snapshot snapshot = load_snapshot(file);
     if (snapshot.patch.time_orbits > until * time_rounding)
       break;
     if (snapshot.patch.time_orbits * time_rounding >= since)
@@ -94,4 +94,4 @@ StoredPatches load_patches_between(const fs::path& folder, double since, double 
   return stored;
 }
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::runs {
 
 /// Snapshots, oldest first, and the title of the scene that made them.
 struct StoredPatches {
@@ -32,4 +32,4 @@ StoredPatches load_patches_between(const std::filesystem::path& folder, double s
 /// Loads a snapshot file, or the newest snapshot of a run's folder.
 StoredPatches load_newest_patch(const std::filesystem::path& path);
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -8,7 +8,7 @@
 #include <keeler/runs/summary.hpp>
 #include <keeler/runs/transport.hpp>
 
-namespace keeler {
+namespace keeler::runs {
 
 /// The costs of this command: of the part of the run since its start, or since a resume after `first_step` steps.
 struct RunCost {
@@ -32,15 +32,15 @@ struct SummarySource {
   const RunResult& result;
   const RunCost& cost;
   double largest_overlap; ///< at present, as a fraction of the radius sum
-  EnergyBalance balance;
+  simulation::EnergyBalance balance;
 };
 
 /// Returns the summary: counts and energies of the whole run, times of this command. Collective; only the root's record
 /// is complete.
-Record summarise(Simulation& simulation, const Scene& scene, const std::optional<Transport>& transport,
-                 const RunResult& result, const RunCost& cost, const Provenance& provenance);
+quantities::Record summarise(Simulation& simulation, const Scene& scene, const std::optional<Transport>& transport,
+                             const RunResult& result, const RunCost& cost, const io::Provenance& provenance);
 
 /// Returns true if the folder's summary is of a finished run; false if it is missing or damaged.
 bool says_finished(const std::filesystem::path& folder);
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -5,12 +5,12 @@
 
 #include <filesystem>
 
-namespace keeler {
+namespace keeler::runs {
 
 /// Returns names, units and meanings, in the order of a summary. For each external force a run also has `split.NAME_s`.
-std::vector<Quantity> summary_quantities();
+std::vector<quantities::Quantity> summary_quantities();
 
 /// Reads the summary in a run's folder, also one of an earlier version. Throws IoError when it is missing or invalid.
-Record read_summary(const std::filesystem::path& folder);
+quantities::Record read_summary(const std::filesystem::path& folder);
 
-} // namespace keeler
+} // namespace keeler::runs

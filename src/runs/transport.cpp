@@ -13,7 +13,7 @@
 #include <numeric>
 #include <span>
 
-namespace keeler {
+namespace keeler::runs {
 namespace {
 
 using Values = std::vector<double>;
@@ -24,12 +24,12 @@ constexpr double min_orbits = 2.0, min_fraction = 1.0 / 3.0; // of a part that m
 constexpr double small_waves = 0.02;                         // fraction of the energy; 1 % of the dispersion
 
 // Returns true if the run had self-gravity and its stress was measured.
-bool measures_gravity(const SeriesTable& series) {
+bool measures_gravity(const io::SeriesTable& series) {
   return series.find("potential_energy_j") != nullptr;
 }
 
 // Returns the rows at which all quantities were measured.
-std::vector<std::size_t> complete_rows(const SeriesTable& series) {
+std::vector<std::size_t> complete_rows(const io::SeriesTable& series) {
   std::vector<std::size_t> rows;
   const Values* const potential = series.find("potential_energy_j");
   for (std::size_t k = 0; k < series.rows(); ++k)
@@ -47,7 +47,7 @@ struct Rates {
   std::size_t size() const { return time.size(); }
 };
 
-Rates rates_of(const SeriesTable& series, const std::vector<std::size_t>& rows, const RingScale& scale) {
+Rates rates_of(const io::SeriesTable& series, const std::vector<std::size_t>& rows, const RingScale& scale) {
   const Values& orbits = series.of("time_orbits");
   const Values &translational = series.of("translational_flux_kg_m2_s"),
                &collisional = series.of("collisional_flux_kg_m2_s");
@@ -72,7 +72,7 @@ Rates rates_of(const SeriesTable& series, const std::vector<std::size_t>& rows, 
       loss += (*potential)[b] - (*potential)[a];
     }
     rates.total.push_back(total);
-    rates.loss.push_back(loss_viscosity(loss, scale.mass, s, time));
+    rates.loss.push_back(diagnostics::loss_viscosity(loss, scale.mass, s, time));
   }
   return rates;
 }
@@ -95,7 +95,7 @@ Estimate ratio_of(const Values& above, const Values& below) {
   Values rest(above.size());
   for (std::size_t k = 0; k < above.size(); ++k)
     rest[k] = above[k] - ratio * below[k];
-  return {ratio, block_mean(rest).error / std::fabs(block_mean(below).value)};
+  return {ratio, statistics::block_mean(rest).error / std::fabs(statistics::block_mean(below).value)};
 }
 
 // Returns none if the ratio is meaningless: smaller than its error, or 0/0.
@@ -119,14 +119,14 @@ bool all_finite(const Values& values) {
 
 // Returns c_x without box-long waves, which keep growing when the random motion is steady. Series of earlier versions
 // or of few particles have only the dispersion about the mean motion.
-Values random_motion(const SeriesTable& series, const std::vector<std::size_t>& rows) {
+Values random_motion(const io::SeriesTable& series, const std::vector<std::size_t>& rows) {
   if (const Values* const without_waves = series.find("dispersion_without_waves_x_m_s"))
     if (Values values = values_at(*without_waves, rows); all_finite(values))
       return values;
   return values_at(series.of("dispersion_x_m_s"), rows);
 }
 
-std::optional<WaveGrowth> waves_in(const SeriesTable& series, const std::vector<std::size_t>& rows) {
+std::optional<WaveGrowth> waves_in(const io::SeriesTable& series, const std::vector<std::size_t>& rows) {
   constexpr double max_sigmas = 3.0;
   const Values* const column = series.find("epicyclic_wave_fraction");
   if (!column || rows.size() < min_for_steady)
@@ -136,7 +136,7 @@ std::optional<WaveGrowth> waves_in(const SeriesTable& series, const std::vector<
     return std::nullopt;
   const std::span<const double> all(fractions);
   const std::size_t half = all.size() / 2;
-  WaveGrowth waves{block_mean(all.first(half)), block_mean(all.last(half))};
+  WaveGrowth waves{statistics::block_mean(all.first(half)), statistics::block_mean(all.last(half))};
   const double first = waves.first_half.value, last = waves.last_half.value;
   waves.steady = std::max(first, last) < small_waves ||
                  std::fabs(last - first) <= max_sigmas * std::hypot(waves.first_half.error, waves.last_half.error);
@@ -144,7 +144,7 @@ std::optional<WaveGrowth> waves_in(const SeriesTable& series, const std::vector<
 }
 
 // A single particle has no dispersion: its energy changes are the rounding of its forces.
-bool moves_at_random(const SeriesTable& series, const std::vector<std::size_t>& rows) {
+bool moves_at_random(const io::SeriesTable& series, const std::vector<std::size_t>& rows) {
   const Values dispersions = values_at(series.of("dispersion_x_m_s"), rows);
   return std::any_of(dispersions.begin(), dispersions.end(), [](double c) { return c > 0.0; });
 }
@@ -152,26 +152,27 @@ bool moves_at_random(const SeriesTable& series, const std::vector<std::size_t>& 
 } // namespace
 
 RingScale RingScale::of(const Patch& patch, bool driven) {
-  return {total_mass(patch), patch.orbital_frequency, patch.box.shear, driven};
+  return {diagnostics::total_mass(patch), patch.orbital_frequency, patch.box.shear, driven};
 }
 
-bool enough_rows(const SeriesTable& series) {
+bool enough_rows(const io::SeriesTable& series) {
   return series.find("translational_flux_kg_m2_s") && complete_rows(series).size() >= min_rows;
 }
 
-double steady_since(const SeriesTable& series, double until) {
+double steady_since(const io::SeriesTable& series, double until) {
   const Values& orbits = series.of("time_orbits");
   const std::vector<std::size_t> rows = within(complete_rows(series), orbits, -HUGE_VAL, until);
   if (rows.size() < min_for_steady)
     return orbits.empty() ? 0.0 : orbits.front();
   const Rates rates = rates_of(series, rows, {.mass = 1.0, .orbital_frequency = 1.0, .shear = 1.0});
-  std::size_t start = std::max(steady_start(rates.loss), steady_start(random_motion(series, rows)));
+  std::size_t start =
+      std::max(statistics::steady_start(rates.loss), statistics::steady_start(random_motion(series, rows)));
   if (!rates.gravitational.empty())
-    start = std::max(start, steady_start(rates.gravitational));
+    start = std::max(start, statistics::steady_start(rates.gravitational));
   return orbits[rows[std::min(start, rows.size() - min_for_steady)]];
 }
 
-Transport transport(const SeriesTable& series, const RingScale& scale, const OrbitWindow& window) {
+Transport transport(const io::SeriesTable& series, const RingScale& scale, const OrbitWindow& window) {
   const Values& orbits = series.of("time_orbits");
   Transport result;
   const double until = window.until ? *window.until : orbits.empty() ? 0.0 : orbits.back();
@@ -187,24 +188,24 @@ Transport transport(const SeriesTable& series, const RingScale& scale, const Orb
   result.since_orbit = orbits[rows.front()];
   result.until_orbit = orbits[rows.back()];
   result.intervals = rates.size();
-  result.translational = block_mean(rates.translational);
-  result.collisional = block_mean(rates.collisional);
-  result.from_loss = block_mean(rates.loss);
+  result.translational = statistics::block_mean(rates.translational);
+  result.collisional = statistics::block_mean(rates.collisional);
+  result.from_loss = statistics::block_mean(rates.loss);
   const bool complete = measures_gravity(series) || std::fabs(series.of("kick_work_j").back()) == 0.0;
   if (measures_gravity(series))
-    result.gravitational = block_mean(rates.gravitational);
+    result.gravitational = statistics::block_mean(rates.gravitational);
   else if (complete)
     result.gravitational = Estimate{};
   if (complete) {
-    result.total = block_mean(rates.total);
+    result.total = statistics::block_mean(rates.total);
     if (!scale.driven && moves_at_random(series, rows))
       result.balance = balance_of(rates);
   }
   result.waves = waves_in(series, rows);
   const double length = result.until_orbit - result.since_orbit;
-  result.steady = length >= min_orbits && length >= min_fraction * (until - orbits.front()) && is_steady(rates.loss) &&
-                  is_steady(random_motion(series, rows));
+  result.steady = length >= min_orbits && length >= min_fraction * (until - orbits.front()) &&
+                  statistics::is_steady(rates.loss) && statistics::is_steady(random_motion(series, rows));
   return result;
 }
 
-} // namespace keeler
+} // namespace keeler::runs

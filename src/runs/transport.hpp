@@ -8,7 +8,7 @@
 
 #include <optional>
 
-namespace keeler {
+namespace keeler::runs {
 
 /// A part of a run, in orbits.
 struct OrbitWindow {
@@ -53,14 +53,14 @@ struct Transport {
 
 /// Returns true if all rows together give a viscosity: at least three rows (with the stress of gravity, if it is
 /// measured), and columns that runs of earlier versions lack.
-bool enough_rows(const SeriesTable& series);
+bool enough_rows(const io::SeriesTable& series);
 
 /// Returns the means over a window. Throws UsageError when the window holds fewer than three rows (with the stress of
 /// gravity, if it is measured).
-Transport transport(const SeriesTable& series, const RingScale& scale, const OrbitWindow& window);
+Transport transport(const io::SeriesTable& series, const RingScale& scale, const OrbitWindow& window);
 
 /// Returns the orbit from which loss, dispersion and stress are steady in the rows up to `until`: the latest of their
 /// steady_start(); the time of the first row if there are fewer than eight.
-double steady_since(const SeriesTable& series, double until);
+double steady_since(const io::SeriesTable& series, double until);
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -13,7 +13,7 @@
 #include <cmath>
 #include <limits>
 
-namespace keeler {
+namespace keeler::runs {
 namespace {
 
 Estimate at_an_instant(double value) {
@@ -24,72 +24,84 @@ using Report = const TransportReport&;
 using Maybe = std::optional<Estimate>;
 
 // Returns a number of the transport; unknown if the series has too few rows.
-Value of_transport(Report r, Value (*number)(const Transport&)) {
+quantities::Value of_transport(Report r, quantities::Value (*number)(const Transport&)) {
   return r.transport() ? number(*r.transport())
-                       : Unknown{"series.csv has fewer than three rows with all stresses here"};
+                       : quantities::Unknown{"series.csv has fewer than three rows with all stresses here"};
 }
 
 // As above, for numbers that a single snapshot does not have.
-Value of_run(Report r, Value (*number)(const Transport&)) {
-  return r.is_of_run() ? of_transport(r, number) : Unknown{"a single snapshot does not determine it"};
+quantities::Value of_run(Report r, quantities::Value (*number)(const Transport&)) {
+  return r.is_of_run() ? of_transport(r, number) : quantities::Unknown{"a single snapshot does not determine it"};
 }
 
-Quantity viscosity(const char* part, const char* label, const char* meaning) {
-  return {fmt::format("{}_viscosity", part), unit::viscosity, label, meaning, Spread::error, Forms::all};
+quantities::Quantity viscosity(const char* part, const char* label, const char* meaning) {
+  return {fmt::format("{}_viscosity", part), quantities::unit::viscosity, label, meaning,
+          quantities::Spread::error,         quantities::Forms::all};
 }
 
-std::vector<QuantityRow<TransportReport>> transport_rows() {
+std::vector<quantities::QuantityRow<TransportReport>> transport_rows() {
   return {
       {viscosity("translational", "viscosity: translational",
                  "⟨c_x c_y⟩/S: transport by the motion of particles (local; Wisdom & Tremaine 1988, AJ 95, 925)"),
-       [](Report r) { return of_transport(r, [](const Transport& t) { return value_of(Maybe(t.translational)); }); }},
+       [](Report r) {
+         return of_transport(r, [](const Transport& t) { return quantities::value_of(Maybe(t.translational)); });
+       }},
       {viscosity("collisional", "viscosity: collisional",
                  "Σ (x_j − x_i) (p_y gained by j) per time over M S: transport from centre to centre in contacts "
                  "(nonlocal; Wisdom & Tremaine 1988)"),
-       [](Report r) { return of_run(r, [](const Transport& t) { return value_of(Maybe(t.collisional)); }); }},
+       [](Report r) {
+         return of_run(r, [](const Transport& t) { return quantities::value_of(Maybe(t.collisional)); });
+       }},
       {viscosity("gravitational", "viscosity: gravitational",
                  "(dΦ/dγ)/(M S): transport by self-gravity (Daisaka, Tanaka & Ida 2001, Icarus 154, 296)"),
-       [](Report r) { return of_transport(r, [](const Transport& t) { return value_of(t.gravitational); }); }},
+       [](Report r) {
+         return of_transport(r, [](const Transport& t) { return quantities::value_of(t.gravitational); });
+       }},
       {viscosity("total", "viscosity: total", "the sum of the three, with the error of the sum"),
-       [](Report r) { return of_run(r, [](const Transport& t) { return value_of(t.total); }); }},
+       [](Report r) { return of_run(r, [](const Transport& t) { return quantities::value_of(t.total); }); }},
       {viscosity("loss", "viscosity: from the loss",
                  "(energy lost in collisions + gain of random and potential energy) per time over M S²: must equal "
                  "the total"),
-       [](Report r) { return of_run(r, [](const Transport& t) { return value_of(Maybe(t.from_loss)); }); }},
-      {{"energy_balance", unit::none, "energy balance",
+       [](Report r) { return of_run(r, [](const Transport& t) { return quantities::value_of(Maybe(t.from_loss)); }); }},
+      {{"energy_balance", quantities::unit::none, "energy balance",
         "`loss_viscosity` over `total_viscosity`: 1 within its error; null where another force does work",
-        Spread::error},
-       [](Report r) { return of_run(r, [](const Transport& t) { return value_of(t.balance); }); }},
-      {{"since_orbit", unit::unnamed("orbits"), "viscosities: since", "first orbit of the measured part"},
-       [](Report r) { return of_transport(r, [](const Transport& t) -> Value { return t.since_orbit; }); }},
-      {{"until_orbit", unit::unnamed("orbits"), "viscosities: until", "last orbit of the measured part"},
-       [](Report r) { return of_transport(r, [](const Transport& t) -> Value { return t.until_orbit; }); }},
-      {of_shape({"since_found", unit::none, "",
+        quantities::Spread::error},
+       [](Report r) { return of_run(r, [](const Transport& t) { return quantities::value_of(t.balance); }); }},
+      {{"since_orbit", quantities::unit::unnamed("orbits"), "viscosities: since", "first orbit of the measured part"},
+       [](Report r) { return of_transport(r, [](const Transport& t) -> quantities::Value { return t.since_orbit; }); }},
+      {{"until_orbit", quantities::unit::unnamed("orbits"), "viscosities: until", "last orbit of the measured part"},
+       [](Report r) { return of_transport(r, [](const Transport& t) -> quantities::Value { return t.until_orbit; }); }},
+      {of_shape({"since_found", quantities::unit::none, "",
                  "whether its beginning was detected, by Chodera's criterion (2016, J. Chem. Theory Comput. 12, 1799)"},
-                Shape::other),
-       [](Report r) { return of_transport(r, [](const Transport& t) -> Value { return t.since_found; }); }},
-      {of_shape({"steady", unit::none, "viscosities: steady", "whether loss and dispersion are steady in that part"},
-                Shape::other),
-       [](Report r) { return of_run(r, [](const Transport& t) -> Value { return t.steady; }); }},
-      {{"epicyclic_wave_fraction_first_half", unit::none, "box-long waves: first half",
-        "mean of the series' `epicyclic_wave_fraction` over the first half of that part", Spread::none, Forms::si, 2},
+                quantities::Shape::other),
+       [](Report r) { return of_transport(r, [](const Transport& t) -> quantities::Value { return t.since_found; }); }},
+      {of_shape({"steady", quantities::unit::none, "viscosities: steady",
+                 "whether loss and dispersion are steady in that part"},
+                quantities::Shape::other),
+       [](Report r) { return of_run(r, [](const Transport& t) -> quantities::Value { return t.steady; }); }},
+      {{"epicyclic_wave_fraction_first_half", quantities::unit::none, "box-long waves: first half",
+        "mean of the series' `epicyclic_wave_fraction` over the first half of that part", quantities::Spread::none,
+        quantities::Forms::si, 2},
        [](Report r) {
-         return of_transport(
-             r, [](const Transport& t) { return t.waves ? value_of(t.waves->first_half.value) : Unknown{}; });
+         return of_transport(r, [](const Transport& t) {
+           return t.waves ? quantities::value_of(t.waves->first_half.value) : quantities::Unknown{};
+         });
        }},
-      {{"epicyclic_wave_fraction_last_half", unit::none, "box-long waves: last half", "mean of it over the last half",
-        Spread::none, Forms::si, 2},
+      {{"epicyclic_wave_fraction_last_half", quantities::unit::none, "box-long waves: last half",
+        "mean of it over the last half", quantities::Spread::none, quantities::Forms::si, 2},
        [](Report r) {
-         return of_transport(
-             r, [](const Transport& t) { return t.waves ? value_of(t.waves->last_half.value) : Unknown{}; });
+         return of_transport(r, [](const Transport& t) {
+           return t.waves ? quantities::value_of(t.waves->last_half.value) : quantities::Unknown{};
+         });
        }},
       {of_shape(
-           {"epicyclic_waves_steady", unit::none, "box-long waves: steady",
+           {"epicyclic_waves_steady", quantities::unit::none, "box-long waves: steady",
             "whether the two agree within three errors; if not, Q and c_x depend on the age of the run and on its box"},
-           Shape::other),
+           quantities::Shape::other),
        [](Report r) {
-         return of_transport(
-             r, [](const Transport& t) -> Value { return t.waves ? Value(t.waves->steady) : Value(Unknown{}); });
+         return of_transport(r, [](const Transport& t) -> quantities::Value {
+           return t.waves ? quantities::Value(t.waves->steady) : quantities::Value(quantities::Unknown{});
+         });
        }}};
 }
 
@@ -111,17 +123,17 @@ TransportReport TransportReport::of_run(const std::filesystem::path& folder, con
   std::error_code unknown;
   if (!std::filesystem::exists(file, unknown))
     return report;
-  return of_series(read_series(file), scale, window);
+  return of_series(io::read_series(file), scale, window);
 }
 
-TransportReport TransportReport::of_series(const SeriesTable& series, const RingScale& scale,
+TransportReport TransportReport::of_series(const io::SeriesTable& series, const RingScale& scale,
                                            const OrbitWindow& window) {
   TransportReport report;
   report.of_run_ = true;
   if (!enough_rows(series))
     return report;
   try {
-    report.transport_ = keeler::transport(series, scale, window);
+    report.transport_ = runs::transport(series, scale, window);
   } catch (const UsageError&) { // too few rows in the window; its snapshots may suffice for the other quantities
   }
   return report;
@@ -133,22 +145,24 @@ TransportReport TransportReport::of_snapshot(const Patch& patch, const std::opti
   const double omega = patch.orbital_frequency;
   assert(omega > 0.0);
   t.since_orbit = t.until_orbit = patch.time_orbits;
-  t.translational = at_an_instant(translational_viscosity(patch) * omega);
+  t.translational = at_an_instant(diagnostics::translational_viscosity(patch) * omega);
   if (gravity && has_energy_meter(*gravity)) {
     const auto meter = make_energy_meter(*gravity, patch.masses, patch.box.area());
-    const GravityProblem problem{patch.positions, patch.masses, patch.ids, patch.box, patch.offset, newton_g(omega)};
-    t.gravitational = at_an_instant(meter->energy(problem).stress / (total_mass(patch) * patch.box.shear) * omega);
+    const gravity::GravityProblem problem{patch.positions, patch.masses, patch.ids,
+                                          patch.box,       patch.offset, newton_g(omega)};
+    t.gravitational =
+        at_an_instant(meter->energy(problem).stress / (diagnostics::total_mass(patch) * patch.box.shear) * omega);
   }
   return report;
 }
 
-Record record_of(const TransportReport& transport, const PatchUnits& units) {
-  static const std::vector<QuantityRow<TransportReport>> rows = transport_rows();
+quantities::Record record_of(const TransportReport& transport, const quantities::PatchUnits& units) {
+  static const std::vector<quantities::QuantityRow<TransportReport>> rows = transport_rows();
   return {entries_of(rows, transport), units};
 }
 
-std::vector<Quantity> transport_quantities() {
+std::vector<quantities::Quantity> transport_quantities() {
   return quantities_of(transport_rows());
 }
 
-} // namespace keeler
+} // namespace keeler::runs

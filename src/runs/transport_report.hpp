@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-namespace keeler {
+namespace keeler::runs {
 
 /// Returns part of a sentence: the energy fractions of the waves in both halves, and the consequence if they differ.
 std::string describe(const WaveGrowth& waves);
@@ -22,7 +22,7 @@ public:
   static TransportReport of_run(const std::filesystem::path& folder, const RingScale& scale, const OrbitWindow& window);
 
   /// As of_run(), from a series that was already read.
-  static TransportReport of_series(const SeriesTable& series, const RingScale& scale, const OrbitWindow& window);
+  static TransportReport of_series(const io::SeriesTable& series, const RingScale& scale, const OrbitWindow& window);
 
   /// Reports a snapshot of a scene with these gravity settings.
   static TransportReport of_snapshot(const Patch& patch, const std::optional<GravitySettings>& gravity);
@@ -38,7 +38,7 @@ private:
 };
 
 /// Returns the viscosities and the energy balance as named numbers.
-Record record_of(const TransportReport& transport, const PatchUnits& units);
-std::vector<Quantity> transport_quantities();
+quantities::Record record_of(const TransportReport& transport, const quantities::PatchUnits& units);
+std::vector<quantities::Quantity> transport_quantities();
 
-} // namespace keeler
+} // namespace keeler::runs

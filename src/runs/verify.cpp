@@ -23,7 +23,7 @@
 #include <cmath>
 #include <map>
 
-namespace keeler {
+namespace keeler::runs {
 namespace fs = std::filesystem;
 namespace {
 
@@ -44,7 +44,7 @@ bool forbids_overlap(const Scene& scene) {
 }
 
 void require_fit(const Patch& patch, const Scene& scene, const std::string& file) {
-  require_possible(patch, file);
+  initial_conditions::require_possible(patch, file);
   if (std::adjacent_find(patch.ids.begin(), patch.ids.end()) != patch.ids.end())
     throw IoError(fmt::format("'{}' has two particles with one id", file));
   if (!nearly_equal(patch.orbital_frequency, scene.planet.orbital_frequency) ||
@@ -57,12 +57,12 @@ void require_fit(const Patch& patch, const Scene& scene, const std::string& file
   if (patch.spins.empty() == scene.collisions.friction.has_value())
     throw IoError(fmt::format("'{}' and the scene in it do not agree whether particles have spins", file));
   if (forbids_overlap(scene))
-    require_no_overlap(patch, "'" + file + "'");
+    cells::require_no_overlap(patch, "'" + file + "'");
 }
 
 // Returns the particles of a checkpoint at the boundary where it was written.
 Patch patch_of(const StoredRun& run) {
-  const SimulationState& state = run.state;
+  const simulation::SimulationState& state = run.state;
   Patch patch = make_patch(state.particles, state.box, state.boundary_offset(), run.scene.planet.frequencies,
                            -0.5 * state.step_length);
   patch.orbital_frequency = run.scene.planet.orbital_frequency;
@@ -70,7 +70,7 @@ Patch patch_of(const StoredRun& run) {
   return patch;
 }
 
-void require_finite(SimulationState& state, const std::string& file) {
+void require_finite(simulation::SimulationState& state, const std::string& file) {
   const FieldTable table = state.fields();
   for (const Field& field : table.fields()) {
     if (field.type != FieldType::float64)
@@ -90,16 +90,16 @@ Found check_checkpoint(const std::string& file) {
 }
 
 Found check_snapshot(const std::string& file) {
-  const Snapshot snapshot = read_snapshot(file);
-  const Scene scene = parse_stored_scene(snapshot.meta.scene, file);
+  const io::Snapshot snapshot = io::read_snapshot(file);
+  const Scene scene = scene::parse_stored_scene(snapshot.meta.scene, file);
   require_fit(snapshot.patch, scene, file);
   return {scene.motion, {}};
 }
 
 Found check_contacts(const std::string& file) {
-  const ContactFile contacts = read_contacts(file);
+  const io::ContactFile contacts = io::read_contacts(file);
   std::int64_t last = 0;
-  for (const ContactRow& row : contacts.rows) {
+  for (const io::ContactRow& row : contacts.rows) {
     const bool finite = std::isfinite(row.time_orbits) && row.position.allFinite() && std::isfinite(row.normal_speed) &&
                         std::isfinite(row.tangential_speed);
     if (!finite || row.step < last || row.low_id >= row.high_id)
@@ -107,12 +107,12 @@ Found check_contacts(const std::string& file) {
                                 contacts.meta.first_row + (&row - contacts.rows.data()), file));
     last = row.step;
   }
-  return {parse_stored_scene(contacts.meta.scene, file).motion, {}};
+  return {scene::parse_stored_scene(contacts.meta.scene, file).motion, {}};
 }
 
 // Steps must not decrease from row to row; in series.csv they must increase.
 Found check_series(const std::string& file) {
-  const SeriesTable table = read_series(file);
+  const io::SeriesTable table = io::read_series(file);
   const std::vector<double>& steps = table.columns.front();
   const bool one_per_step = fs::path(file).filename() == "series.csv";
   const auto follows = [&](double step, double last) { return one_per_step ? step > last : step >= last; };
@@ -123,11 +123,11 @@ Found check_series(const std::string& file) {
 }
 
 Found check_scene(const std::string& file) {
-  return {parse_stored_scene(read_text(file), file).motion, {}};
+  return {scene::parse_stored_scene(files::read_text(file), file).motion, {}};
 }
 
 Found check_summary(const std::string& file) {
-  const auto json = json_of<nlohmann::json>(read_text(file));
+  const auto json = json_of<nlohmann::json>(files::read_text(file));
   if (!json.is_object() || !json.contains("state_hash") || !json["state_hash"].is_string())
     throw IoError(fmt::format("'{}' is not the summary of a run", file));
   return {{}, json["state_hash"].get<std::string>()};
@@ -135,7 +135,7 @@ Found check_summary(const std::string& file) {
 
 // Checks the complete lines: the last one may be incomplete, in a run that is in progress or was killed.
 Found check_log(const std::string& file) {
-  const std::string text = read_lines(file);
+  const std::string text = files::read_lines(file);
   std::size_t line = 0;
   for (std::size_t begin = 0, end; (end = text.find('\n', begin)) != text.npos; begin = end + 1) {
     ++line;
@@ -167,12 +167,12 @@ Kind kind_of(const fs::path& file) {
     return text->second;
   if (RunFolder::is_run_file(name))
     return name.starts_with("snap") ? snapshot : name.starts_with("checkpoint") ? checkpoint : contacts;
-  switch (describe_file(file).kind) {
-  case FileKind::checkpoint:
+  switch (io::describe_file(file).kind) {
+  case io::FileKind::checkpoint:
     return checkpoint;
-  case FileKind::snapshot:
+  case io::FileKind::snapshot:
     return snapshot;
-  case FileKind::contacts:
+  case io::FileKind::contacts:
     break;
   }
   return contacts;
@@ -188,7 +188,7 @@ Verified verify(const fs::path& path) {
   try {
     const Kind kind = kind_of(path);
     verified.file.kind = kind.name;
-    verified.file.sealed = is_sealed(path);
+    verified.file.sealed = io::is_sealed(path);
     verified.found = kind.check(path.string());
   } catch (const Error& error) {
     verified.file.damage = error.what();
@@ -263,4 +263,4 @@ std::vector<VerifiedFile> verify_folder(const fs::path& folder) {
   return files;
 }
 
-} // namespace keeler
+} // namespace keeler::runs

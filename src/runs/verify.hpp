@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::runs {
 
 struct VerifiedFile {
   std::string file;    ///< path of the file
@@ -23,4 +23,4 @@ VerifiedFile verify_file(const std::filesystem::path& file);
 /// sweep or a study, the files of all its runs. Throws IoError when the folder holds no run.
 std::vector<VerifiedFile> verify_folder(const std::filesystem::path& folder);
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -8,7 +8,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::scene {
 namespace {
 
 // Sets mass and radius of each ball by the radii that are drawn, so that balls and other particles cannot overlap.
@@ -16,7 +16,7 @@ void find_balls(std::vector<AggregateSettings>& aggregates, const ParticleSettin
   if (aggregates.empty())
     return;
   assert(aggregates.back().first + aggregates.back().count == particles.count);
-  const DrawnSizes sizes(particles.sizes, particles.count, particles.seed);
+  const particles::DrawnSizes sizes(particles.sizes, particles.count, particles.seed);
   for (AggregateSettings& a : aggregates) {
     double cubes = 0.0;
     for (std::size_t k = a.first; k < a.first + a.count; ++k) {
@@ -65,7 +65,7 @@ std::vector<Key> aggregate_keys() {
   };
 }
 
-std::vector<AggregateSettings> read_aggregates(Settings& settings, const std::string& name,
+std::vector<AggregateSettings> read_aggregates(config::Settings& settings, const std::string& name,
                                                const ParticleSettings& particles) {
   assert(particles.count > 0);
   std::vector<AggregateSettings> aggregates;
@@ -74,10 +74,11 @@ std::vector<AggregateSettings> read_aggregates(Settings& settings, const std::st
     const Parameters p = settings.parameters(table, name);
     const auto count = static_cast<std::size_t>(p.integer("count"));
     if (count > particles.count - total)
-      fail_at(settings.location(table + ".count"),
-              fmt::format("{}.count = {} is too large (the scene has {}, of which {} are in earlier aggregates); "
-                          "lower it or give the scene more particles",
-                          table, count, pluralize(particles.count, "particle"), total));
+      config::fail_at(
+          settings.location(table + ".count"),
+          fmt::format("{}.count = {} is too large (the scene has {}, of which {} are in earlier aggregates); "
+                      "lower it or give the scene more particles",
+                      table, count, pluralize(particles.count, "particle"), total));
     total += count;
     const std::vector<double> position = p.numbers("place");
     aggregates.push_back({.count = count,
@@ -94,4 +95,4 @@ std::vector<AggregateSettings> read_aggregates(Settings& settings, const std::st
   return aggregates;
 }
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -6,13 +6,13 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::scene {
 
 std::vector<Key> aggregate_keys();
 
 /// Returns the aggregates of a fresh start. Throws UsageError if the scene has too few particles for them.
 /// Precondition: particles.count is set.
-std::vector<AggregateSettings> read_aggregates(Settings& settings, const std::string& name,
+std::vector<AggregateSettings> read_aggregates(config::Settings& settings, const std::string& name,
                                                const ParticleSettings& particles);
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -5,7 +5,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::scene {
 namespace {
 
 constexpr double min_wavelengths = 0.5; // λ_cr per side of a box in which wakes can grow: the fastest at Q = 1
@@ -37,7 +37,7 @@ double vertical_press(double optical_depth, double restitution, double vertical_
 
 } // namespace
 
-double size_spread(const SizeLaw& sizes) {
+double size_spread(const particles::SizeLaw& sizes) {
   const double mean = sizes.mean_power(1);
   return sizes.mean_power(2) / (mean * mean);
 }
@@ -101,4 +101,4 @@ SceneContacts scene_contacts(const Scene& scene) {
   return {rates(compressed), rates(wakes ? std::max(compressed, wake_crowding(depth, r_h)) : compressed)};
 }
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -4,7 +4,7 @@
 
 #include <keeler/scene/scene.hpp>
 
-namespace keeler {
+namespace keeler::scene {
 
 /// Contacts per particle and orbit; each counts for both of its particles, as in a run's summary.
 struct ContactRates {
@@ -20,7 +20,7 @@ double compressed_crowding(double optical_depth, double hill_parameter);
 double wake_crowding(double optical_depth, double hill_parameter);
 
 /// Returns ⟨r²⟩/⟨r⟩².
-double size_spread(const SizeLaw& sizes);
+double size_spread(const particles::SizeLaw& sizes);
 
 /// Returns the rate (per particle and orbit) of a layer without crowding.
 double dilute_rate(double optical_depth, double vertical_ratio);
@@ -44,4 +44,4 @@ double encountered_optical_depth(const Scene& scene);
 /// Returns the coefficient of restitution of a typical impact, at about three times the speed R Ω.
 double typical_restitution(const Scene& scene);
 
-} // namespace keeler
+} // namespace keeler::scene

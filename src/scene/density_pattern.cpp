@@ -6,7 +6,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::scene {
 
 double DensityPattern::relative(double x, double y) const {
   assert(size_x > 0.0 && size_y > 0.0);
@@ -43,4 +43,4 @@ double DensityPattern::pitch() const {
   return std::atan2(waves_y / size_y, waves_x / size_x) * 180.0 / pi;
 }
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <array>
 
-namespace keeler {
+namespace keeler::scene {
 namespace {
 
 using Row = std::array<std::string, 4>; // key, default, unit, meaning
 
 std::string meaning_words(const Key& key) {
-  std::string words = fmt::format("{}; {}", key.meaning, allowed_words(key));
+  std::string words = fmt::format("{}; {}", key.meaning, config::allowed_words(key));
   for (const std::string& other : key.alternatives)
     words += fmt::format("; or {}", find_key(other)->name());
   if (!key.only_with.key.empty())
@@ -55,4 +55,4 @@ std::string describe_keys(bool markdown) {
   return out;
 }
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <filesystem>
 
-namespace keeler {
+namespace keeler::scene {
 namespace {
 
 const ExampleScene* example_named(const std::string& name) {
@@ -54,11 +54,11 @@ std::string read_scene_text(const std::string& path) {
       (!exists || std::filesystem::is_directory(path, unknown))) // folders of runs often have their example's name
     return std::string(example->toml);
   if (!could_be_example(path) || exists)
-    return read_input(path, path);
+    return files::read_input(path, path);
   const std::string near = nearest_example(path);
   throw UsageError(fmt::format("{}: there is no file and no example of this name; {}", path,
                                near.empty() ? "check the path, or see \"keeler new --list\""
                                             : fmt::format("did you mean '{}'?", near)));
 }
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace keeler {
+namespace keeler::scene {
 
 struct ExampleScene {
   /// A table that belongs to a scene, for `keeler generate --from-table`.
@@ -29,4 +29,4 @@ const ExampleScene& find_example(const std::string& name);
 /// neither.
 std::string read_scene_text(const std::string& path);
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -15,7 +15,7 @@
 
 #include <fmt/format.h>
 
-namespace keeler {
+namespace keeler::scene {
 namespace {
 
 KeyRange up_to(double high) {
@@ -40,7 +40,7 @@ constexpr std::size_t max_placed_bodies = 1000;
 
 std::vector<std::string> finder_names() {
   std::vector<std::string> names;
-  for (const FinderEntry& finder : finder_table())
+  for (const finders::FinderEntry& finder : finders::finder_table())
     names.emplace_back(finder.name);
   return names;
 }
@@ -348,33 +348,33 @@ std::vector<Key> make_keys() {
   add_laws(
       keys,
       {.type = KeyType::choice, .example = "\"equal\"", .meaning = "size distribution", .effect = KeyEffect::start},
-      "particles.sizes", size_laws());
+      "particles.sizes", particles::size_laws());
   add(start_pattern_keys());
-  if (!start_laws().empty())
+  if (!particles::start_laws().empty())
     add_laws(keys,
              {.type = KeyType::choice,
-              .example = fmt::format("\"{}\"", start_laws().front().name),
+              .example = fmt::format("\"{}\"", particles::start_laws().front().name),
               .meaning = "start of the calling program that places the particles",
               .effect = KeyEffect::start},
-             "particles.start", start_laws());
+             "particles.start", particles::start_laws());
   add(aggregate_keys());
   add(moonlet_keys());
   add(collision_keys());
   add_laws(
       keys,
       {.type = KeyType::choice, .fallback = "\"bridges\"", .meaning = "law of the coefficient of normal restitution"},
-      "collisions.restitution", restitution_laws());
+      "collisions.restitution", collision::restitution_laws());
   add(restitution_keys());
   add(friction_keys());
-  add_table(keys, "gravity", gravity_keys());
-  for (const ForceEntry& force : external_forces())
+  add_table(keys, "gravity", forces::gravity_keys());
+  for (const forces::ForceEntry& force : forces::external_forces())
     add_table(keys, force.table, force.keys);
   add(course_keys());
   return keys;
 }
 
-std::vector<Section> make_sections() {
-  std::vector<Section> sections = {
+std::vector<config::Section> make_sections() {
+  std::vector<config::Section> sections = {
       {.path = "planet", .needed = true, .meaning = "it sets the orbit of the patch"},
       {.path = "box", .needed = true, .meaning = "it sets the size of the patch", .replaced_by = "start.from"},
       {.path = "particles",
@@ -400,11 +400,11 @@ std::vector<Section> make_sections() {
       {.path = "output", .defaults_if_absent = true},
       {.path = "output.collisions"},
   };
-  if (!start_laws().empty())
+  if (!particles::start_laws().empty())
     sections.push_back({.path = "particles.start", .replaced_by = "start.from"});
-  for (const ForceEntry& force : external_forces())
+  for (const forces::ForceEntry& force : forces::external_forces())
     sections.push_back({.path = force.table});
   return sections;
 }
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -6,9 +6,9 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::scene {
 
 std::vector<Key> make_keys();
-std::vector<Section> make_sections();
+std::vector<config::Section> make_sections();
 
-} // namespace keeler
+} // namespace keeler::scene

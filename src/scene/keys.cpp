@@ -2,11 +2,11 @@
 
 #include "key_table.hpp"
 
-namespace keeler {
+namespace keeler::scene {
 
-const Schema& scene_schema() {
-  static const Schema schema(make_keys(), make_sections());
+const config::Schema& scene_schema() {
+  static const config::Schema schema(make_keys(), make_sections());
   return schema;
 }
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -8,25 +8,25 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::scene {
 
 /// Returns every key and table of a scene, in the order of the manual.
-const Schema& scene_schema();
+const config::Schema& scene_schema();
 
 inline const std::vector<Key>& scene_keys() {
   return scene_schema().keys();
 }
-inline const std::vector<Section>& scene_sections() {
+inline const std::vector<config::Section>& scene_sections() {
   return scene_schema().sections();
 }
 inline const Key* find_key(const std::string& path) {
   return scene_schema().find_key(path);
 }
-inline const Section* find_section(const std::string& path) {
+inline const config::Section* find_section(const std::string& path) {
   return scene_schema().find_section(path);
 }
 
 /// Returns every key with default, unit and meaning, as a text table or as the manual's Markdown table.
 std::string describe_keys(bool markdown);
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::scene {
 
 /// A key of the resolved scene.
 struct KeyInForce {
@@ -19,4 +19,4 @@ struct KeyInForce {
 /// Returns every key of the resolved scene, in its order.
 std::vector<KeyInForce> keys_in_force(const Scene& scene);
 
-} // namespace keeler
+} // namespace keeler::scene

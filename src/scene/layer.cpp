@@ -6,18 +6,18 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::scene {
 namespace {
 
 constexpr double volume_term = 1.7; // of H², in τ R²
 
 } // namespace
 
-double surface_density_per_depth(const SizeLaw& sizes, double density) {
+double surface_density_per_depth(const particles::SizeLaw& sizes, double density) {
   return (4.0 / 3.0) * density * sizes.mean_power(3) / sizes.mean_power(2);
 }
 
-LayerSizes layer_sizes(const SizeLaw& sizes, std::size_t count) {
+LayerSizes layer_sizes(const particles::SizeLaw& sizes, std::size_t count) {
   assert(count > 0);
   const double cubes = sizes.mean_power(3);
   double alone = 0.0; // Σ m²/(Σ m)²; continuous laws have many large particles
@@ -54,4 +54,4 @@ double optical_depth_for_filling(const LayerSizes& sizes, double velocity_disper
   return (half + std::sqrt(half * half + a * a * motion * motion)) / (a * a);
 }
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -5,10 +5,10 @@
 
 #include <cstddef>
 
-namespace keeler {
+namespace keeler::scene {
 
 /// Returns the mass per unit area (kg/m²) of particles of this law at optical depth 1, (4/3) ρ ⟨r³⟩/⟨r²⟩.
-double surface_density_per_depth(const SizeLaw& sizes, double density);
+double surface_density_per_depth(const particles::SizeLaw& sizes, double density);
 
 /// Mean sizes of the particles of a layer. A listed body that holds much of the mass by itself is weighted with the
 /// mass of the other particles, so that a single moonlet does not make a thick layer.
@@ -17,7 +17,7 @@ struct LayerSizes {
   double effective_radius = 0.0; ///< R = ⟨r³⟩/⟨r²⟩, m, where each r³ is weighted by 1 − m/M, M the mass of all
 };
 /// Precondition: count > 0.
-LayerSizes layer_sizes(const SizeLaw& sizes, std::size_t count);
+LayerSizes layer_sizes(const particles::SizeLaw& sizes, std::size_t count);
 
 /// c_z / c_x of a fresh patch: equilibria without self-gravity have 0.64 to 0.72.
 inline constexpr double vertical_fraction = 0.65;
@@ -43,4 +43,4 @@ inline constexpr double largest_filling = 0.55;
 /// Upper limit of midplane_filling() in a scene: equal spheres jam at random at 0.64 (O'Hern et al. 2003).
 inline constexpr double refused_filling = 0.62;
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -24,10 +24,10 @@
 #include <algorithm>
 #include <utility>
 
-namespace keeler {
+namespace keeler::scene {
 namespace {
 
-PlanetSettings read_planet(Settings& settings) {
+PlanetSettings read_planet(config::Settings& settings) {
   PlanetSettings planet;
   if (settings.has("planet.preset")) {
     planet = find_preset(settings.text("planet.preset"));
@@ -41,19 +41,20 @@ PlanetSettings read_planet(Settings& settings) {
   return planet;
 }
 
-std::optional<Friction> read_friction(const Settings& settings) {
+std::optional<collision::Friction> read_friction(const config::Settings& settings) {
   if (!settings.has("collisions.friction"))
     return {};
   const std::string coefficient = "collisions.friction.coefficient";
-  return Friction{settings.number("collisions.friction.tangential_restitution"),
-                  settings.is_word(coefficient) ? Friction::unlimited : settings.number(coefficient)};
+  return collision::Friction{settings.number("collisions.friction.tangential_restitution"),
+                             settings.is_word(coefficient) ? collision::Friction::unlimited
+                                                           : settings.number(coefficient)};
 }
 
-CollisionSettings read_collisions(Settings& settings, const std::string& name) {
-  CollisionSettings collisions;
+collision::CollisionSettings read_collisions(config::Settings& settings, const std::string& name) {
+  collision::CollisionSettings collisions;
   collisions.finder = settings.text("collisions.finder");
   collisions.elastic_below = settings.number("collisions.elastic_below");
-  collisions.restitution = make_law(restitution_laws(), "collisions.restitution", settings, name);
+  collisions.restitution = make_law(collision::restitution_laws(), "collisions.restitution", settings, name);
   if (const double largest = settings.number("collisions.restitution.largest"); largest < 1.0)
     collisions.restitution = [law = collisions.restitution, largest](const Impact& impact) {
       return std::min(largest, law(impact));
@@ -63,23 +64,24 @@ CollisionSettings read_collisions(Settings& settings, const std::string& name) {
 }
 
 // `size_x`: of the box; 0 if a start file holds it: then the solver checks its settings later.
-std::optional<GravitySettings> read_gravity(Settings& settings, const std::string& name, double size_x) {
+std::optional<GravitySettings> read_gravity(config::Settings& settings, const std::string& name, double size_x) {
   if (!settings.has("gravity"))
     return {};
-  const GravitySettings gravity = gravity_settings(settings.parameters("gravity", name));
+  const GravitySettings gravity = forces::gravity_settings(settings.parameters("gravity", name));
   if (size_x > 0.0 && gravity.solver == GravitySettings::Solver::axisymmetric)
-    if (const std::string fault = radial_mesh_fault(size_x, gravity.shortest_wavelength); !fault.empty())
-      fail_at(settings.location("gravity.shortest_wavelength"), fault);
+    if (const std::string fault = gravity::radial_mesh_fault(size_x, gravity.shortest_wavelength); !fault.empty())
+      config::fail_at(settings.location("gravity.shortest_wavelength"), fault);
   return gravity;
 }
 
 // If the box is known, each force is constructed once, so that its checks run now.
-std::vector<ForceSettings> read_external_forces(const Scene& scene, Settings& settings, const std::string& name) {
-  const ForceContext context{.masses = {},
-                             .box = {scene.size_x, scene.size_y, scene.planet.frequencies.shear(), 0.0},
-                             .orbital_frequency = scene.planet.orbital_frequency};
+std::vector<ForceSettings> read_external_forces(const Scene& scene, config::Settings& settings,
+                                                const std::string& name) {
+  const forces::ForceContext context{.masses = {},
+                                     .box = {scene.size_x, scene.size_y, scene.planet.frequencies.shear(), 0.0},
+                                     .orbital_frequency = scene.planet.orbital_frequency};
   std::vector<ForceSettings> forces;
-  for (const ForceEntry& entry : external_forces()) {
+  for (const forces::ForceEntry& entry : forces::external_forces()) {
     if (!settings.has(entry.table))
       continue;
     forces.push_back({&entry, settings.parameters(entry.table, name)});
@@ -89,13 +91,13 @@ std::vector<ForceSettings> read_external_forces(const Scene& scene, Settings& se
       if (scene.size_x > 0.0)
         entry.make(forces.back().parameters, context);
     } catch (const UsageError& fault) {
-      fail_at(settings.location(entry.table), fault.what());
+      config::fail_at(settings.location(entry.table), fault.what());
     }
   }
   return forces;
 }
 
-std::optional<ContactLogSettings> read_contact_log(Settings& settings) {
+std::optional<ContactLogSettings> read_contact_log(config::Settings& settings) {
   if (!settings.has("output.collisions"))
     return {};
   return ContactLogSettings{settings.number("output.collisions.min_speed"),
@@ -103,7 +105,7 @@ std::optional<ContactLogSettings> read_contact_log(Settings& settings) {
                             settings.number("output.collisions.share")};
 }
 
-void read_start(Scene& scene, Settings& settings, const std::string& name) {
+void read_start(Scene& scene, config::Settings& settings, const std::string& name) {
   scene.start_from = settings.file_path("start.from", name);
   scene.start_keep = settings.number("start.keep");
   scene.start_keep_seed = static_cast<std::uint64_t>(settings.integer("start.keep_seed"));
@@ -113,7 +115,7 @@ enum class Purpose { start, table, resume }; // table: the scene's particles are
 
 // If the particles come from a file, a table or the calling program, decided_by() makes the choice later. Stored scenes
 // without a choice are of versions that bounced all contacts.
-void read_resting_contacts(Scene& scene, Settings& settings, Purpose purpose) {
+void read_resting_contacts(Scene& scene, config::Settings& settings, Purpose purpose) {
   const char* const key = "gravity.resting_contacts";
   if (!scene.gravity || !settings.has(key) || settings.text(key) != "auto")
     return;
@@ -123,10 +125,11 @@ void read_resting_contacts(Scene& scene, Settings& settings, Purpose purpose) {
     settings.resolve(key, std::string(scene.gravity->resting_contacts ? "carried" : "bounced"));
 }
 
-Scene read_scene(TomlDocument document, const std::string& name, Purpose purpose, std::vector<std::string> notices) {
+Scene read_scene(config::TomlDocument document, const std::string& name, Purpose purpose,
+                 std::vector<std::string> notices) {
   add_gravity_of_quality(document);
   check_document(document, name);
-  Settings settings(std::move(document));
+  config::Settings settings(std::move(document));
   Scene scene;
   scene.notices = std::move(notices);
   scene.title = settings.text("title");
@@ -158,7 +161,7 @@ Scene read_scene(TomlDocument document, const std::string& name, Purpose purpose
 
 Scene parse_scene(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
                   const std::optional<std::string>& from) {
-  TomlDocument document = parse_document(text, name, scene_schema());
+  config::TomlDocument document = parse_document(text, name, scene_schema());
   std::vector<std::string> notices;
   apply_overrides(document, overrides, notices);
   if (from)
@@ -172,7 +175,7 @@ TableScene load_table_scene(const std::string& path, const std::vector<std::stri
 
 TableScene parse_table_scene(const std::string& text, const std::string& name,
                              const std::vector<std::string>& overrides) {
-  TomlDocument document = parse_document(text, name, scene_schema());
+  config::TomlDocument document = parse_document(text, name, scene_schema());
   std::vector<std::string> notices;
   apply_overrides(document, overrides, notices);
   const bool has_density = find_entry(document, "particles.density") != nullptr;
@@ -183,10 +186,10 @@ TableScene parse_table_scene(const std::string& text, const std::string& name,
   return of;
 }
 
-Scene load_varied_scene(const std::string& path, const std::vector<Override>& overrides) {
-  TomlDocument document = parse_document(read_scene_text(path), path, scene_schema());
+Scene load_varied_scene(const std::string& path, const std::vector<config::Override>& overrides) {
+  config::TomlDocument document = parse_document(read_scene_text(path), path, scene_schema());
   std::vector<std::string> notices;
-  for (const Override& by : overrides)
+  for (const config::Override& by : overrides)
     apply_override(document, by, notices);
   return read_scene(std::move(document), path, Purpose::start, std::move(notices));
 }
@@ -198,29 +201,29 @@ struct ForeignScene : UsageError {
   using UsageError::UsageError;
 };
 
-void require_known(const TomlDocument& document, const std::string& name) {
-  for (const DocumentEntry& entry : document) {
+void require_known(const config::TomlDocument& document, const std::string& name) {
+  for (const config::DocumentEntry& entry : document) {
     const Key* const key = find_key(entry.path);
     const auto* const word = std::get_if<std::string>(&entry.value);
     const bool is_law = key && key->type == KeyType::choice && key->name() == "law" && word;
     if (is_law ? std::ranges::count(key->choices, *word) == 0 : !key && !find_section(entry.path))
       throw ForeignScene(fmt::format("the scene of '{}' has {}, which this program does not know; continue in the "
                                      "program that made it",
-                                     name, is_law ? entry.path + " = " + to_toml(entry.value) : entry.path));
+                                     name, is_law ? entry.path + " = " + config::to_toml(entry.value) : entry.path));
   }
 }
 
 } // namespace
 
 Scene parse_stored_scene(const std::string& text, const std::string& name) {
-  TomlDocument document = parse_document(text, name, scene_schema());
+  config::TomlDocument document = parse_document(text, name, scene_schema());
   require_known(document, name);
   name_quality_of_stored(document, name);
   return read_scene(std::move(document), name, Purpose::resume, {});
 }
 
 Scene load_stored_scene(const std::filesystem::path& file) {
-  const std::string text = read_lines(file);
+  const std::string text = files::read_lines(file);
   try {
     return parse_stored_scene(text, file.string());
   } catch (const ForeignScene& foreign) {
@@ -251,4 +254,4 @@ Scene decided_by(const Scene& scene, const PatchScale& start) {
   return decided;
 }
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::scene {
 
 /// As load_scene(), with overrides that another file gives; a later one acts on top of an earlier one.
-Scene load_varied_scene(const std::string& path, const std::vector<Override>& overrides);
+Scene load_varied_scene(const std::string& path, const std::vector<config::Override>& overrides);
 
 /// A scene for a table of particles. Its keys of particles are ignored and may be absent, except for the density.
 struct TableScene {
@@ -34,4 +34,4 @@ bool leaves_resting_open(const Scene& scene);
 /// that leaves nothing open is returned unchanged.
 Scene decided_by(const Scene& scene, const PatchScale& start);
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -3,9 +3,9 @@
 
 #include <keeler/core/key.hpp>
 
-namespace keeler {
+namespace keeler::scene {
 
 /// Up to the densest metals, kg/m³.
 inline constexpr KeyRange material_densities = {.low = 1e-2, .high = 3e4};
 
-} // namespace keeler
+} // namespace keeler::scene

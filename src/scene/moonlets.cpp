@@ -9,7 +9,7 @@
 
 #include <cassert>
 
-namespace keeler {
+namespace keeler::scene {
 namespace {
 
 Vec3 vector_of(const std::vector<double>& numbers) {
@@ -62,19 +62,20 @@ std::vector<Key> moonlet_keys() {
   };
 }
 
-std::vector<MoonletSettings> read_moonlets(Settings& settings, const std::string& name) {
+std::vector<MoonletSettings> read_moonlets(config::Settings& settings, const std::string& name) {
   std::vector<MoonletSettings> moonlets;
   for (const std::string& table : settings.tables("moonlet")) {
     const Parameters p = settings.parameters(table, name);
     const double radius = p.number("radius"), volume = 4.0 / 3.0 * pi * radius * radius * radius;
     const double mass = p.has("mass") ? p.number("mass") : p.number("density") * volume, density = mass / volume;
     if (p.has("mass") && !material_densities.contains(density))
-      fail_at(settings.location(table + ".mass"),
-              fmt::format("{}.mass gives a density of {} kg/m^3, but it must be {}; change the mass or the radius",
-                          table, format_number(density, 3), material_densities.words()));
+      config::fail_at(
+          settings.location(table + ".mass"),
+          fmt::format("{}.mass gives a density of {} kg/m^3, but it must be {}; change the mass or the radius", table,
+                      format_number(density, 3), material_densities.words()));
     moonlets.push_back({radius, mass, vector_of(p.numbers("place")), vector_of(p.numbers("velocity"))});
   }
   return moonlets;
 }
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -6,11 +6,11 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::scene {
 
 std::vector<Key> moonlet_keys();
 
 /// Returns the moonlets, also for a scene that is continued: a run needs their number.
-std::vector<MoonletSettings> read_moonlets(Settings& settings, const std::string& name);
+std::vector<MoonletSettings> read_moonlets(config::Settings& settings, const std::string& name);
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -14,7 +14,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::scene {
 namespace {
 
 // Throws UsageError if a value that follows from the key `from` is outside the range of the key `path`.
@@ -22,11 +22,12 @@ void require_possible(const std::string& location, const std::string& from, cons
   assert(find_key(path));
   const Key& key = *find_key(path);
   if (!key.range.contains(value))
-    fail_at(location, fmt::format("{} makes {} {}, but it must be {} ({}, in {}); change {}", from, path,
-                                  format_number(value, 3), allowed_words(key), key.meaning, key.unit, from));
+    config::fail_at(location,
+                    fmt::format("{} makes {} {}, but it must be {} ({}, in {}); change {}", from, path,
+                                format_number(value, 3), config::allowed_words(key), key.meaning, key.unit, from));
 }
 
-StreamlineSettings read_streamlines(const Settings& settings) {
+StreamlineSettings read_streamlines(const config::Settings& settings) {
   if (!settings.has("particles.streamlines"))
     return {};
   return {static_cast<int>(settings.integer("particles.streamlines.waves")),
@@ -52,7 +53,7 @@ ModeSettings read_mode(const std::vector<double>& row, ModeSettings::Direction d
   return {direction, static_cast<int>(row[0]), row[1], row[2]};
 }
 
-void read_modes(Settings& settings, const std::string& name, const char* key, ModeSettings::Direction direction,
+void read_modes(config::Settings& settings, const std::string& name, const char* key, ModeSettings::Direction direction,
                 std::vector<ModeSettings>& modes) {
   const std::string section = "particles.modes", path = fmt::format("{}.{}", section, key),
                     location = settings.location(path);
@@ -62,37 +63,38 @@ void read_modes(Settings& settings, const std::string& name, const char* key, Mo
     for (std::size_t k = 0; k < rows.size(); ++k)
       modes.push_back(read_mode(rows[k], direction, fmt::format("row {} of {}", k + 1, path)));
   } catch (const UsageError& fault) {
-    fail_at(location, fault.what());
+    config::fail_at(location, fault.what());
   }
 }
 
-std::vector<ModeSettings> read_modes(Settings& settings, const std::string& name) {
+std::vector<ModeSettings> read_modes(config::Settings& settings, const std::string& name) {
   std::vector<ModeSettings> modes;
   if (!settings.has("particles.modes"))
     return modes;
   const std::string location = settings.location("particles.modes");
   if (settings.has("particles.streamlines"))
-    fail_at(location,
-            "[particles.modes] cannot be combined with [particles.streamlines] (each sets the mean motion at the "
-            "start); keep one of the two");
+    config::fail_at(
+        location, "[particles.modes] cannot be combined with [particles.streamlines] (each sets the mean motion at the "
+                  "start); keep one of the two");
   read_modes(settings, name, "outward", ModeSettings::Direction::outward, modes);
   read_modes(settings, name, "inward", ModeSettings::Direction::inward, modes);
   read_modes(settings, name, "standing", ModeSettings::Direction::standing, modes);
   if (modes.empty())
-    fail_at(location, "[particles.modes] has no modes; add for example outward = [[1, 0.1, 0.0]]");
+    config::fail_at(location, "[particles.modes] has no modes; add for example outward = [[1, 0.1, 0.0]]");
   if (modes.size() > max_modes)
-    fail_at(location,
-            fmt::format("[particles.modes] has {} modes (at most {}: the position of each particle takes all of them); "
-                        "remove the weakest",
-                        modes.size(), max_modes));
+    config::fail_at(
+        location,
+        fmt::format("[particles.modes] has {} modes (at most {}: the position of each particle takes all of them); "
+                    "remove the weakest",
+                    modes.size(), max_modes));
   double sum = 0.0;
   for (const ModeSettings& mode : modes)
     sum += mode.amplitude;
   if (!(sum <= max_bunching))
-    fail_at(location,
-            fmt::format("the amplitudes of [particles.modes] sum up to {:.3g} (at 1 streamlines cross); lower "
-                        "them to {} in all",
-                        sum, max_bunching));
+    config::fail_at(location,
+                    fmt::format("the amplitudes of [particles.modes] sum up to {:.3g} (at 1 streamlines cross); lower "
+                                "them to {} in all",
+                                sum, max_bunching));
   return modes;
 }
 
@@ -101,15 +103,15 @@ void require_long(const Scene& scene, int waves, const std::string& location, co
   assert(waves > 0 && scene.size_x > 0.0);
   const double across = 2.0 * scene.particles.sizes.largest, wavelength = scene.size_x / waves;
   if (!(wavelength >= across))
-    fail_at(location,
-            fmt::format("{} has waves of {} m, shorter than the largest particle ({} m across); give at most {} "
-                        "in the box",
-                        what, format_number(wavelength, 4), format_number(across, 4),
-                        std::max(1.0, std::floor(scene.size_x / across))));
+    config::fail_at(
+        location, fmt::format("{} has waves of {} m, shorter than the largest particle ({} m across); give at most {} "
+                              "in the box",
+                              what, format_number(wavelength, 4), format_number(across, 4),
+                              std::max(1.0, std::floor(scene.size_x / across))));
 }
 
 // Precondition: the box is known.
-void require_long_waves(const Scene& scene, const Settings& settings) {
+void require_long_waves(const Scene& scene, const config::Settings& settings) {
   const ParticleSettings& particles = scene.particles;
   if (particles.streamlines.bunching > 0.0)
     require_long(scene, particles.streamlines.waves, settings.location("particles.streamlines.waves"),
@@ -121,11 +123,11 @@ void require_long_waves(const Scene& scene, const Settings& settings) {
   }
 }
 
-void read_step(const Scene& scene, const Settings& settings, DensityPattern& pattern) {
+void read_step(const Scene& scene, const config::Settings& settings, DensityPattern& pattern) {
   const std::vector<double> between = settings.numbers("particles.step.between");
   const double edge = 0.5 * scene.size_x;
   if (!(between[0] < between[1] && between[0] >= -edge && between[1] <= edge && between[1] - between[0] < scene.size_x))
-    fail_at(
+    config::fail_at(
         settings.location("particles.step.between"),
         fmt::format("particles.step.between is [{}, {}] (it must be two rising x within the box, from {} to {}, and "
                     "not all of it); correct it",
@@ -136,26 +138,29 @@ void read_step(const Scene& scene, const Settings& settings, DensityPattern& pat
 }
 
 // Rounds the wave vector so that whole waves fit the periodic box along both sides.
-void read_wake(Scene& scene, Settings& settings, DensityPattern& pattern) {
+void read_wake(Scene& scene, config::Settings& settings, DensityPattern& pattern) {
   const double wavelength = settings.number("particles.wake.wavelength"),
                pitch = settings.number("particles.wake.pitch") * pi / 180.0;
   const double waves_x = std::round(scene.size_x * std::cos(pitch) / wavelength),
                waves_y = std::round(scene.size_y * std::sin(pitch) / wavelength);
   const std::string location = settings.location("particles.wake.wavelength");
   if (waves_x == 0.0 && waves_y == 0.0)
-    fail_at(location,
-            fmt::format("particles.wake.wavelength = {} is too long (no wave fits the box of {} m x {} m); lower "
-                        "it or enlarge the box",
-                        format_number(wavelength), format_number(scene.size_x, 4), format_number(scene.size_y, 4)));
+    config::fail_at(
+        location,
+        fmt::format("particles.wake.wavelength = {} is too long (no wave fits the box of {} m x {} m); lower "
+                    "it or enlarge the box",
+                    format_number(wavelength), format_number(scene.size_x, 4), format_number(scene.size_y, 4)));
   if (!(wavelength >= 2.0 * scene.particles.sizes.largest))
-    fail_at(location,
-            fmt::format("particles.wake.wavelength = {} is shorter than the largest particle ({} m across); raise "
-                        "it",
-                        format_number(wavelength), format_number(2.0 * scene.particles.sizes.largest, 4)));
+    config::fail_at(
+        location,
+        fmt::format("particles.wake.wavelength = {} is shorter than the largest particle ({} m across); raise "
+                    "it",
+                    format_number(wavelength), format_number(2.0 * scene.particles.sizes.largest, 4)));
   constexpr double max_waves = 1e9;
   if (!(waves_x <= max_waves && waves_y <= max_waves))
-    fail_at(location, fmt::format("particles.wake.wavelength = {} is too short (the box would hold {} waves); raise it",
-                                  format_number(wavelength), format_number(std::max(waves_x, waves_y), 3)));
+    config::fail_at(location,
+                    fmt::format("particles.wake.wavelength = {} is too short (the box would hold {} waves); raise it",
+                                format_number(wavelength), format_number(std::max(waves_x, waves_y), 3)));
   pattern.contrast = settings.number("particles.wake.contrast");
   pattern.waves_x = static_cast<int>(waves_x);
   pattern.waves_y = static_cast<int>(waves_y);
@@ -169,7 +174,7 @@ void read_wake(Scene& scene, Settings& settings, DensityPattern& pattern) {
   settings.resolve("particles.wake.pitch", pattern.pitch());
 }
 
-void read_pattern(Scene& scene, Settings& settings) {
+void read_pattern(Scene& scene, config::Settings& settings) {
   DensityPattern pattern{.size_x = scene.size_x, .size_y = scene.size_y};
   if (settings.has("particles.step"))
     read_step(scene, settings, pattern);
@@ -178,18 +183,19 @@ void read_pattern(Scene& scene, Settings& settings) {
   scene.particles.pattern = pattern;
 }
 
-std::optional<StartSettings> read_start(Settings& settings, const std::string& name) {
+std::optional<StartSettings> read_start(config::Settings& settings, const std::string& name) {
   if (!settings.has("particles.start"))
     return {};
   for (const char* const other : {"streamlines", "modes", "step", "wake", "aggregate"})
     if (const std::string path = std::string("particles.") + other; settings.has(path))
-      fail_at(settings.location(path),
-              fmt::format("{} cannot be combined with particles.start (each says where particles are at the start); "
-                          "remove one of the two",
-                          path));
+      config::fail_at(
+          settings.location(path),
+          fmt::format("{} cannot be combined with particles.start (each says where particles are at the start); "
+                      "remove one of the two",
+                      path));
   const std::string law = settings.text("particles.start.law");
-  const auto entry = std::ranges::find(start_laws(), law, &StartEntry::name);
-  assert(entry != start_laws().end());
+  const auto entry = std::ranges::find(particles::start_laws(), law, &particles::StartEntry::name);
+  assert(entry != particles::start_laws().end());
   return StartSettings{&*entry, settings.parameters("particles.start", name)};
 }
 
@@ -199,7 +205,7 @@ struct Amount {
   double optical_depth = 0.0;
 };
 
-Amount read_amount(const Settings& settings, const ParticleSettings& particles) {
+Amount read_amount(const config::Settings& settings, const ParticleSettings& particles) {
   if (settings.has("particles.optical_depth"))
     return {"particles.optical_depth", settings.number("particles.optical_depth")};
   if (settings.has("particles.surface_density"))
@@ -208,7 +214,7 @@ Amount read_amount(const Settings& settings, const ParticleSettings& particles) 
   return {"particles.count"};
 }
 
-void read_box(Scene& scene, Settings& settings, const Amount& amount) {
+void read_box(Scene& scene, config::Settings& settings, const Amount& amount) {
   const std::string wavelengths = "box.size_in_wavelengths";
   const bool by_wavelength = settings.has(wavelengths);
   const std::string key = by_wavelength ? wavelengths : "box.size";
@@ -216,7 +222,7 @@ void read_box(Scene& scene, Settings& settings, const Amount& amount) {
   std::vector<double> size = settings.numbers(key);
   if (by_wavelength) {
     if (amount.key == "particles.count")
-      fail_at(
+      config::fail_at(
           location,
           "box.size_in_wavelengths cannot be combined with particles.count (the wavelength follows from the surface "
           "density, and with a count this follows from the box); give box.size or particles.optical_depth");
@@ -230,20 +236,22 @@ void read_box(Scene& scene, Settings& settings, const Amount& amount) {
   for (const double length : size)
     require_possible(location, key, "box.size", length);
   if (!(std::max(size[0], size[1]) <= max_aspect_ratio * std::min(size[0], size[1])))
-    fail_at(location, fmt::format("the box of {} m x {} m is more than {:g} times as long as wide (it would need too "
-                                  "many images of its short side); make it squarer",
-                                  format_number(size[0], 4), format_number(size[1], 4), max_aspect_ratio));
+    config::fail_at(location,
+                    fmt::format("the box of {} m x {} m is more than {:g} times as long as wide (it would need too "
+                                "many images of its short side); make it squarer",
+                                format_number(size[0], 4), format_number(size[1], 4), max_aspect_ratio));
   scene.size_x = size[0];
   scene.size_y = size[1];
   const double diameter = 2.0 * scene.particles.sizes.largest;
   if (!(std::min(size[0], size[1]) >= diameter))
-    fail_at(location,
-            fmt::format("the box of {:.4g} m x {:.4g} m is smaller than a particle (the largest is {:.4g} m across); "
-                        "enlarge the box or lower the radius",
-                        size[0], size[1], diameter));
+    config::fail_at(
+        location,
+        fmt::format("the box of {:.4g} m x {:.4g} m is smaller than a particle (the largest is {:.4g} m across); "
+                    "enlarge the box or lower the radius",
+                    size[0], size[1], diameter));
 }
 
-void read_count(Scene& scene, Settings& settings, const Amount& amount) {
+void read_count(Scene& scene, config::Settings& settings, const Amount& amount) {
   const std::string location = settings.location(amount.key);
   ParticleSettings& particles = scene.particles;
   double count = 0.0;
@@ -254,9 +262,9 @@ void read_count(Scene& scene, Settings& settings, const Amount& amount) {
     count = std::round(amount.optical_depth * scene.size_x * scene.size_y / particle_area);
   }
   if (!(count >= 1.0 && count <= 1e9))
-    fail_at(location,
-            fmt::format("{} with this box makes {:.3g} particles (a run takes 1 to 1e9); change the box or {}",
-                        amount.key, count, amount.key));
+    config::fail_at(location,
+                    fmt::format("{} with this box makes {:.3g} particles (a run takes 1 to 1e9); change the box or {}",
+                                amount.key, count, amount.key));
   particles.count = static_cast<std::size_t>(count);
   require_possible(location, amount.key, "particles.optical_depth", scene.optical_depth());
   require_possible(location, amount.key, "particles.surface_density", scene.surface_density());
@@ -274,15 +282,16 @@ void check_filling(Scene& scene, const std::string& location) {
   if (!(filling <= refused_filling)) {
     const double hot = dispersion_for_filling(bunched, sizes, nu, refused_filling);
     const double thin = optical_depth_for_filling(sizes, particles.velocity_dispersion, nu, refused_filling);
-    fail_at(location, fmt::format("too dense (the mid-plane filling factor would be {:.2f}, and at most {:.2f} can be "
-                                  "placed without overlap); raise velocity_dispersion to at least {:.2f} or lower the "
-                                  "optical depth from {:.3g} to at most {:.2f}{}",
-                                  filling, refused_filling, std::ceil(hot * 100.0) / 100.0, depth,
-                                  std::floor(thin * depth / bunched * 100.0) / 100.0,
-                                  !(bunched > depth)             ? ""
-                                  : !particles.pattern.uniform() ? " or even out the step or the wake"
-                                  : particles.modes.empty()      ? " or lower the bunching"
-                                                                 : " or lower the amplitudes of the modes"));
+    config::fail_at(location,
+                    fmt::format("too dense (the mid-plane filling factor would be {:.2f}, and at most {:.2f} can be "
+                                "placed without overlap); raise velocity_dispersion to at least {:.2f} or lower the "
+                                "optical depth from {:.3g} to at most {:.2f}{}",
+                                filling, refused_filling, std::ceil(hot * 100.0) / 100.0, depth,
+                                std::floor(thin * depth / bunched * 100.0) / 100.0,
+                                !(bunched > depth)             ? ""
+                                : !particles.pattern.uniform() ? " or even out the step or the wake"
+                                : particles.modes.empty()      ? " or lower the bunching"
+                                                               : " or lower the amplitudes of the modes"));
   }
   if (filling > largest_filling)
     scene.notices.push_back(
@@ -293,14 +302,14 @@ void check_filling(Scene& scene, const std::string& location) {
 
 } // namespace
 
-void read_particles_and_box(Scene& scene, Settings& settings, const std::string& name) {
+void read_particles_and_box(Scene& scene, config::Settings& settings, const std::string& name) {
   assert(scene.planet.orbital_frequency > 0.0);
   ParticleSettings& particles = scene.particles;
-  particles.sizes = make_law(size_laws(), "particles.sizes", settings, name);
+  particles.sizes = make_law(particles::size_laws(), "particles.sizes", settings, name);
   try {
     require_consistent(particles.sizes);
   } catch (const UsageError& fault) {
-    fail_at(settings.location("particles.sizes.law"), fmt::format("particles.sizes: {}", fault.what()));
+    config::fail_at(settings.location("particles.sizes.law"), fmt::format("particles.sizes: {}", fault.what()));
   }
   particles.density = particles.sizes.density ? particles.sizes.mean_density : settings.number("particles.density");
   particles.velocity_dispersion = settings.number("particles.velocity_dispersion");
@@ -319,4 +328,4 @@ void read_particles_and_box(Scene& scene, Settings& settings, const std::string&
     check_filling(scene, location);
 }
 
-} // namespace keeler
+} // namespace keeler::scene

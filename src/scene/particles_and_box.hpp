@@ -4,9 +4,9 @@
 #include <keeler/config/settings.hpp>
 #include <keeler/scene/scene.hpp>
 
-namespace keeler {
+namespace keeler::scene {
 
 /// Reads the scene's particles and box. `name` is the scene file. Precondition: scene.planet is set.
-void read_particles_and_box(Scene& scene, Settings& settings, const std::string& name);
+void read_particles_and_box(Scene& scene, config::Settings& settings, const std::string& name);
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -7,7 +7,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::scene {
 namespace {
 
 // Returns the scale of a fresh patch, from the scene alone.
@@ -57,7 +57,7 @@ PatchScale scale_of(const BodySums& sums, std::size_t particle_count, double siz
 PatchScale scale_of(const Scene& scene) {
   assert(!scene.start_from);
   const ParticleSettings& particles = scene.particles;
-  const SizeLaw& sizes = particles.sizes;
+  const particles::SizeLaw& sizes = particles.sizes;
   const auto count = static_cast<double>(particles.count);
   const auto mass_of = [&](double cubes) { return 4.0 / 3.0 * pi * particles.density * cubes; };
   BodySums sums;
@@ -80,4 +80,4 @@ PatchScale scale_of(const Scene& scene) {
   return scale;
 }
 
-} // namespace keeler
+} // namespace keeler::scene

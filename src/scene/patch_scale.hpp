@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace keeler {
+namespace keeler::scene {
 
 /// Density and speed of the particles of a start, in metres and radians of orbit.
 struct StartScale {
@@ -59,4 +59,4 @@ PatchScale scale_of(const BodySums& sums, std::size_t particle_count, double siz
 /// Returns the scale of a fresh start, moonlets included. Precondition: the scene has no start file.
 PatchScale scale_of(const Scene& scene);
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -8,7 +8,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::scene {
 namespace {
 
 struct PlacedBody {
@@ -42,28 +42,30 @@ double distance(const Vec3& a, const Vec3& b, const Scene& scene) {
   return d.norm();
 }
 
-void check_in_box(const PlacedBody& body, const Scene& scene, const Settings& settings) {
+void check_in_box(const PlacedBody& body, const Scene& scene, const config::Settings& settings) {
   const std::string size = body.table + "." + body.size_key, key = body.table + ".place";
   if (!(2.0 * body.radius <= std::min(scene.size_x, scene.size_y)))
-    fail_at(settings.location(size),
-            fmt::format("{} is {} m across (more than one side of the box of {} m x {} m); enlarge the box or lower "
-                        "the {}",
-                        body.table, format_number(2.0 * body.radius, 4), format_number(scene.size_x, 4),
-                        format_number(scene.size_y, 4), body.size_key));
+    config::fail_at(
+        settings.location(size),
+        fmt::format("{} is {} m across (more than one side of the box of {} m x {} m); enlarge the box or lower "
+                    "the {}",
+                    body.table, format_number(2.0 * body.radius, 4), format_number(scene.size_x, 4),
+                    format_number(scene.size_y, 4), body.size_key));
   if (!(2.0 * std::fabs(body.position.x()) <= scene.size_x && 2.0 * std::fabs(body.position.y()) <= scene.size_y))
-    fail_at(settings.location(key),
-            fmt::format("{} is outside the box (it extends {} m and {} m to each side of its centre); move it", key,
-                        format_number(0.5 * scene.size_x, 4), format_number(0.5 * scene.size_y, 4)));
+    config::fail_at(settings.location(key),
+                    fmt::format("{} is outside the box (it extends {} m and {} m to each side of its centre); move it",
+                                key, format_number(0.5 * scene.size_x, 4), format_number(0.5 * scene.size_y, 4)));
   if (const double longer = std::max(scene.size_x, scene.size_y); !(body.height <= longer))
-    fail_at(settings.location(body.table),
-            fmt::format("{} reaches {} m from the mid-plane (more than the longer side of the box, {} m: too far for a "
-                        "ring); lower its place and its vertical velocity",
-                        body.table, format_number(body.height, 4), format_number(longer, 4)));
+    config::fail_at(
+        settings.location(body.table),
+        fmt::format("{} reaches {} m from the mid-plane (more than the longer side of the box, {} m: too far for a "
+                    "ring); lower its place and its vertical velocity",
+                    body.table, format_number(body.height, 4), format_number(longer, 4)));
 }
 
 } // namespace
 
-void check_placed_bodies(const Scene& scene, const Settings& settings) {
+void check_placed_bodies(const Scene& scene, const config::Settings& settings) {
   const std::vector<PlacedBody> bodies = placed_bodies(scene);
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     const PlacedBody& body = bodies[k];
@@ -71,11 +73,12 @@ void check_placed_bodies(const Scene& scene, const Settings& settings) {
     for (std::size_t j = 0; j < k; ++j)
       if (const double apart = distance(body.position, bodies[j].position, scene);
           apart < body.radius + bodies[j].radius)
-        fail_at(settings.location(body.table),
-                fmt::format("{} and {} overlap (their centres are {} m apart, their radii {} m and {} m); move one",
-                            bodies[j].table, body.table, format_number(apart, 4), format_number(bodies[j].radius, 4),
-                            format_number(body.radius, 4)));
+        config::fail_at(
+            settings.location(body.table),
+            fmt::format("{} and {} overlap (their centres are {} m apart, their radii {} m and {} m); move one",
+                        bodies[j].table, body.table, format_number(apart, 4), format_number(bodies[j].radius, 4),
+                        format_number(body.radius, 4)));
   }
 }
 
-} // namespace keeler
+} // namespace keeler::scene

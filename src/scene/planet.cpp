@@ -6,14 +6,14 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::scene {
 
 double critical_wavelength(double surface_density, const PlanetSettings& planet) {
-  return critical_wavelength(newton_g_si, surface_density, planet.frequencies.kappa * planet.orbital_frequency);
+  return hill::critical_wavelength(newton_g_si, surface_density, planet.frequencies.kappa * planet.orbital_frequency);
 }
 
 double toomre_q(double surface_density, double dispersion, const PlanetSettings& planet) {
-  return toomre_q(newton_g_si, surface_density, planet.frequencies.kappa * planet.orbital_frequency, dispersion);
+  return hill::toomre_q(newton_g_si, surface_density, planet.frequencies.kappa * planet.orbital_frequency, dispersion);
 }
 
 double distance_from_saturn(const PlanetSettings& planet) {
@@ -28,4 +28,4 @@ double hill_parameter(double density, double distance) {
   return 0.82 * std::cbrt(density / 900.0) * distance / 1e8;
 }
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace keeler {
+namespace keeler::scene {
 
 struct PresetText {
   std::string_view name;
@@ -22,4 +22,4 @@ std::vector<std::string> preset_names();
 /// Returns the frequencies of a preset. Precondition: `name` is one of preset_names().
 PlanetSettings find_preset(const std::string& name);
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-namespace keeler {
+namespace keeler::scene {
 
 /// A named accuracy: the values that a scene of this quality gets for keys that it does not give.
 struct Quality {
@@ -26,4 +26,4 @@ inline constexpr std::array<std::string_view, 5> keys_of_quality = {
 inline constexpr std::array<Quality, 3> qualities = {
     {{"fast", 1e-2, 0.8, 10e-3, 0.03}, {"balanced", 4e-3, 0.6, 5e-3, 0.01}, {"strict", 1e-3, 0.4, 2e-3, 0.003}}};
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -7,7 +7,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::scene {
 namespace {
 
 constexpr double usual_hill = 0.94;                           // where the intervals were measured
@@ -51,13 +51,13 @@ const Quality* quality_of(const std::string& name) {
   return found == qualities.end() ? nullptr : &*found;
 }
 
-const std::string* word_in(const TomlDocument& document, const std::string& path) {
-  const DocumentEntry* const entry = find_entry(document, path);
+const std::string* word_in(const config::TomlDocument& document, const std::string& path) {
+  const config::DocumentEntry* const entry = find_entry(document, path);
   return entry ? std::get_if<std::string>(&entry->value) : nullptr;
 }
 
 // Returns nullptr for "custom", and for values that check_document() refuses.
-const Quality* quality_in(const TomlDocument& document) {
+const Quality* quality_in(const config::TomlDocument& document) {
   if (!find_entry(document, "quality"))
     return quality_of(default_quality);
   const std::string* const name = word_in(document, "quality");
@@ -66,11 +66,11 @@ const Quality* quality_in(const TomlDocument& document) {
 
 } // namespace
 
-void add_gravity_of_quality(TomlDocument& document) {
+void add_gravity_of_quality(config::TomlDocument& document) {
   const Quality* const quality = quality_in(document);
   if (!quality || !find_entry(document, "gravity"))
     return;
-  const auto add = [&](const std::string& path, DocumentValue value) {
+  const auto add = [&](const std::string& path, config::DocumentValue value) {
     if (!find_entry(document, path))
       document.add({path, "quality", "quality", std::move(value), false});
   };
@@ -85,12 +85,12 @@ void add_gravity_of_quality(TomlDocument& document) {
     add("gravity.opening_angle", quality->opening_angle);
 }
 
-void name_quality_of_stored(TomlDocument& document, const std::string& name) {
+void name_quality_of_stored(config::TomlDocument& document, const std::string& name) {
   if (!find_entry(document, "quality"))
     document.add({"quality", name, name, std::string("custom"), false});
 }
 
-void resolve_times_of_quality(Scene& scene, Settings& settings) {
+void resolve_times_of_quality(Scene& scene, config::Settings& settings) {
   assert(scene.planet.orbital_frequency > 0.0);
   const Quality* const quality = quality_of(settings.text("quality"));
   if (!quality || settings.is_word("time.step"))
@@ -116,4 +116,4 @@ void resolve_times_of_quality(Scene& scene, Settings& settings) {
   }
 }
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -6,16 +6,16 @@
 #include <keeler/config/settings.hpp>
 #include <keeler/scene/scene.hpp>
 
-namespace keeler {
+namespace keeler::scene {
 
 /// Adds the keys of [gravity]. The document may be unchecked.
-void add_gravity_of_quality(TomlDocument& document);
+void add_gravity_of_quality(config::TomlDocument& document);
 
 /// Sets the quality of a stored scene without one to "custom": it is of a version without qualities. A later stored
 /// scene holds all values that its quality gave.
-void name_quality_of_stored(TomlDocument& document, const std::string& name);
+void name_quality_of_stored(config::TomlDocument& document, const std::string& name);
 
 /// Sets the step and the kick interval. Precondition: all but the times has been read.
-void resolve_times_of_quality(Scene& scene, Settings& settings);
+void resolve_times_of_quality(Scene& scene, config::Settings& settings);
 
-} // namespace keeler
+} // namespace keeler::scene

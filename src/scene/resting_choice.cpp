@@ -9,7 +9,7 @@
 #include <cmath>
 #include <utility>
 
-namespace keeler {
+namespace keeler::scene {
 namespace {
 
 constexpr double aggregates_last = 1.0;     // r_h
@@ -52,4 +52,4 @@ RestingChoice choose_resting_contacts(const PatchScale& patch, const Scene& scen
                                                 format_number(100.0 * excess, 2))};
 }
 
-} // namespace keeler
+} // namespace keeler::scene

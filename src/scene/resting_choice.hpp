@@ -9,7 +9,7 @@
 
 #include <string>
 
-namespace keeler {
+namespace keeler::scene {
 
 /// Returns the fraction by which the loss in collisions exceeds the work of the shear if all contacts bounce.
 /// `kick_interval` is in orbits.
@@ -28,4 +28,4 @@ struct RestingChoice {
 /// Returns the choice for a patch, with the planet and the kick interval of the scene.
 RestingChoice choose_resting_contacts(const PatchScale& patch, const Scene& scene);
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <cassert>
 
-namespace keeler {
+namespace keeler::scene {
 
 LayerSizes ParticleSettings::layer_sizes() const {
-  return keeler::layer_sizes(sizes, count);
+  return scene::layer_sizes(sizes, count);
 }
 
 double ParticleSettings::bunching() const {
@@ -46,4 +46,4 @@ double Scene::bunched_optical_depth() const {
   return free * optical_depth() * particles.pattern.peak() / (1.0 - particles.bunching());
 }
 
-} // namespace keeler
+} // namespace keeler::scene

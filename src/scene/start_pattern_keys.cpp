@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace keeler {
+namespace keeler::scene {
 namespace {
 
 std::vector<Key> streamline_keys() {
@@ -100,4 +100,4 @@ std::vector<Key> start_pattern_keys() {
   return all;
 }
 
-} // namespace keeler
+} // namespace keeler::scene

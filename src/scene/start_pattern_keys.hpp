@@ -5,8 +5,8 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::scene {
 
 std::vector<Key> start_pattern_keys();
 
-} // namespace keeler
+} // namespace keeler::scene

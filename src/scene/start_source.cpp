@@ -3,22 +3,22 @@
 #include <keeler/config/overrides.hpp>
 #include <keeler/scene/keys.hpp>
 
-namespace keeler {
+namespace keeler::scene {
 
-void apply_start(TomlDocument& document, const std::string& snapshot, std::vector<std::string>& notices) {
+void apply_start(config::TomlDocument& document, const std::string& snapshot, std::vector<std::string>& notices) {
   apply_text(document, "start.from", snapshot, "--from " + snapshot, notices);
 }
 
-void apply_table(TomlDocument& document) {
-  if (const DocumentEntry* entry = find_entry(document, "start.from"))
-    fail_at(entry->value_location,
-            "start.from cannot be combined with a table of particles (either is the start); remove one "
-            "of the two");
-  if (const DocumentEntry* entry = find_entry(document, "box.size_in_wavelengths"))
-    fail_at(entry->value_location,
-            "box.size_in_wavelengths cannot be combined with a table of particles (the wavelength "
-            "follows from a surface density that the scene asks for); give box.size");
-  document.remove_if([](const DocumentEntry& entry) {
+void apply_table(config::TomlDocument& document) {
+  if (const config::DocumentEntry* entry = find_entry(document, "start.from"))
+    config::fail_at(entry->value_location,
+                    "start.from cannot be combined with a table of particles (either is the start); remove one "
+                    "of the two");
+  if (const config::DocumentEntry* entry = find_entry(document, "box.size_in_wavelengths"))
+    config::fail_at(entry->value_location,
+                    "box.size_in_wavelengths cannot be combined with a table of particles (the wavelength "
+                    "follows from a surface density that the scene asks for); give box.size");
+  document.remove_if([](const config::DocumentEntry& entry) {
     return entry.path.starts_with("particles.") && entry.path != "particles.density" &&
            (find_key(entry.path) || find_section(entry.path));
   });
@@ -30,4 +30,4 @@ void apply_table(TomlDocument& document) {
     set("particles.density", "1000.0");
 }
 
-} // namespace keeler
+} // namespace keeler::scene

@@ -4,13 +4,13 @@
 #include <keeler/config/settings.hpp>
 #include <keeler/scene/scene.hpp>
 
-namespace keeler {
+namespace keeler::scene {
 
 /// Reads [time] and the schedules of [output]. Precondition: the scene has its gravity settings, and the step is
 /// resolved.
-void read_times(Scene& scene, Settings& settings);
+void read_times(Scene& scene, config::Settings& settings);
 
 /// Throws UsageError if a step holds more than TimeSettings::max_oscillations.
-void refuse_many_oscillations(const Scene& scene, const Settings& settings);
+void refuse_many_oscillations(const Scene& scene, const config::Settings& settings);
 
-} // namespace keeler
+} // namespace keeler::scene

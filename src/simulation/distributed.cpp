@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace keeler {
+namespace keeler::simulation {
 
 namespace {
 
@@ -32,7 +32,7 @@ void Simulation::require_distributable(const Scene& scene, std::size_t count) {
     if (gravity.carries())
       refuse("contacts at rest that carry kicks", "set gravity.resting_contacts to \"bounced\"");
   }
-  if (!make_finder(scene.collisions.finder)->exact())
+  if (!finders::make_finder(scene.collisions.finder)->exact())
     refuse("an inexact finder", "set collisions.finder to \"certified\"");
 }
 
@@ -40,13 +40,13 @@ void Simulation::divide() {
   if (!ranks_.distributed())
     return;
   ranks_.together([&] { require_distributable(scene_, count_); });
-  slabs_ = std::make_unique<Slabs>(ranks_, state_.box, scene_.planet.frequencies);
+  slabs_ = std::make_unique<decomposition::Slabs>(ranks_, state_.box, scene_.planet.frequencies);
   slabs_->distribute(holding());
 }
 
 // Returns the particles, and the accelerations of their last kicks, which the next half kick needs.
-SlabHolding Simulation::holding() {
-  SlabHolding holding{state_.particles, {}};
+decomposition::SlabHolding Simulation::holding() {
+  decomposition::SlabHolding holding{state_.particles, {}};
   for (ForceState& force : state_.forces)
     holding.rows.push_back(&force.accelerations);
   return holding;
@@ -63,13 +63,13 @@ void Simulation::require_ghost_layer() {
 
 // Every particle that may touch one of this rank's in the next step has a copy here, and that step begins at this
 // boundary.
-Overlap Simulation::largest_overlap_distributed() {
+cells::Overlap Simulation::largest_overlap_distributed() {
   require_ghost_layer();
   slabs_->add_ghosts(state_.particles);
-  const Overlap here = keeler::largest_overlap(patch_of(state_.particles));
+  const cells::Overlap here = cells::largest_overlap(patch_of(state_.particles));
   slabs_->remove_ghosts(state_.particles);
-  Overlap largest;
-  for (const std::vector<Overlap>& of_rank : ranks_.exchange(std::vector(ranks_.size(), std::vector{here})))
+  cells::Overlap largest;
+  for (const std::vector<cells::Overlap>& of_rank : ranks_.exchange(std::vector(ranks_.size(), std::vector{here})))
     if (deeper(of_rank.front(), largest))
       largest = of_rank.front();
   return largest;
@@ -89,4 +89,4 @@ void Simulation::collide_distributed() {
   }
 }
 
-} // namespace keeler
+} // namespace keeler::simulation

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace keeler {
+namespace keeler::simulation {
 namespace {
 
 void require_room(const ShearingBox& box, double largest, const std::string& name) {
@@ -25,10 +25,10 @@ void require_room(const ShearingBox& box, double largest, const std::string& nam
 // Collective.
 void require_fit(const Scene& scene, const Patch& start, const std::string& name, const Communicator& ranks) {
   ranks.together([&] {
-    require_memory_for(scene, start.size());
+    advice::require_memory_for(scene, start.size());
     require_sound(start);
     if (!ranks.distributed())
-      require_no_overlap(start, name);
+      cells::require_no_overlap(start, name);
   });
   const double largest = ranks.max(start.size() ? *std::max_element(start.radii.begin(), start.radii.end()) : 0.0);
   ranks.on_root([&] { require_room(start.box, largest, name); });
@@ -92,10 +92,10 @@ SimulationState first_state(const Scene& scene, const Patch& start, const Commun
   broadcast_all_but_particles(state, ranks);
   state.particles = particles_of(start, scene, state);
   note_moonlets(state, ranks);
-  const ParticleMeans means =
-      particle_means(state.particles, scene.planet.frequencies, -0.5 * state.step_length, ranks);
+  const diagnostics::ParticleMeans means =
+      diagnostics::particle_means(state.particles, scene.planet.frequencies, -0.5 * state.step_length, ranks);
   state.energy = {means.epicyclic_energy, means.azimuthal, means.spin.energy};
   return state;
 }
 
-} // namespace keeler
+} // namespace keeler::simulation

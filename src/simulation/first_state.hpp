@@ -3,7 +3,7 @@
 
 #include <keeler/simulation/state.hpp>
 
-namespace keeler {
+namespace keeler::simulation {
 
 /// Returns the name of the initial state in messages: its file, if it has one.
 std::string start_name(const Scene& scene);
@@ -13,4 +13,4 @@ std::string start_name(const Scene& scene);
 /// largest does not fit in the box.
 SimulationState first_state(const Scene& scene, const Patch& start, const Communicator& ranks);
 
-} // namespace keeler
+} // namespace keeler::simulation

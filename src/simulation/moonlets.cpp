@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cstring>
 
-namespace keeler {
+namespace keeler::simulation {
 
 void Simulation::find_moonlets() {
   moonlet_indices_.assign(state_.moonlets.size(), elsewhere);
@@ -62,4 +62,4 @@ void Simulation::wrap_moonlets() {
   }
 }
 
-} // namespace keeler
+} // namespace keeler::simulation

@@ -22,7 +22,7 @@
 #include <cassert>
 #include <cstring>
 
-namespace keeler {
+namespace keeler::simulation {
 namespace {
 
 constexpr double sorting_interval = 0.1; // orbits
@@ -39,7 +39,7 @@ struct KickSums {
 };
 
 // A run stops and writes where self-gravity kicks: all forces must have received both halves of their kicks there.
-void require_coinciding_kicks(const Force& force, const std::string& name, const Scene& scene) {
+void require_coinciding_kicks(const forces::Force& force, const std::string& name, const Scene& scene) {
   const std::int64_t every = force.kick_every(), interval = scene.gravity ? scene.gravity->kick_every : 1;
   if (every < 1 || interval % every != 0)
     throw UsageError(fmt::format("the force '{}' kicks every {} steps (it must be a divisor of gravity.kick_every, "
@@ -47,17 +47,17 @@ void require_coinciding_kicks(const Force& force, const std::string& name, const
                                  name, every, interval));
 }
 
-std::vector<std::unique_ptr<Force>> make_forces(const Scene& scene, const SimulationState& state,
-                                                const Communicator& ranks) {
+std::vector<std::unique_ptr<forces::Force>> make_forces(const Scene& scene, const SimulationState& state,
+                                                        const Communicator& ranks) {
   std::vector<double> masses;
   if (!state.forces.empty())
     for (const Body& body : state.particles.bodies)
       masses.push_back(body.mass);
-  const ForceContext context{masses, state.box, scene.planet.orbital_frequency, scene.particles.seed, ranks};
-  std::vector<std::unique_ptr<Force>> forces;
+  const forces::ForceContext context{masses, state.box, scene.planet.orbital_frequency, scene.particles.seed, ranks};
+  std::vector<std::unique_ptr<forces::Force>> forces;
   if (scene.gravity)
     forces.push_back(make_self_gravity(*scene.gravity, context));
-  for (const ForceSettings& force : scene.external_forces) {
+  for (const scene::ForceSettings& force : scene.external_forces) {
     forces.push_back(force.entry->make(force.parameters, context));
     require_coinciding_kicks(*forces.back(), force.entry->table, scene);
   }
@@ -69,7 +69,7 @@ std::vector<std::unique_ptr<Force>> make_forces(const Scene& scene, const Simula
 Simulation::Simulation(const Scene& scene, const Patch& start, const Communicator& ranks)
     : Simulation(scene, first_state(scene, start, ranks), ranks) {
   if (ranks_.distributed()) {
-    const Overlap largest = largest_overlap_distributed();
+    const cells::Overlap largest = largest_overlap_distributed();
     ranks_.together([&] { require_no_overlap(largest, start_name(scene_)); });
   }
   for (std::size_t f = 0; f < forces_.size(); ++f)
@@ -79,7 +79,7 @@ Simulation::Simulation(const Scene& scene, const Patch& start, const Communicato
 Simulation::Simulation(const Scene& scene, SimulationState state, const Communicator& ranks)
     : scene_(scene), ranks_(ranks), state_(std::move(state)), count_(ranks.sum(state_.particles.size())),
       drift_(scene.collisions, scene.planet.frequencies, scene.planet.orbital_frequency, state_.step_length),
-      resting_(std::make_unique<RestingContacts>()) {
+      resting_(std::make_unique<contact_solver::RestingContacts>()) {
   divide();
   forces_ = make_forces(scene_, state_, ranks_);
   find_moonlets();
@@ -90,7 +90,7 @@ Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&& other) noexcept = default;
 Simulation& Simulation::operator=(Simulation&& other) noexcept = default;
 
-const RestingCosts& Simulation::resting_costs() const {
+const contact_solver::RestingCosts& Simulation::resting_costs() const {
   return resting_->costs();
 }
 
@@ -155,22 +155,23 @@ void Simulation::schedule_drift() {
 
 // Precondition: the order in memory has not changed since the drift.
 void Simulation::note_slow_pairs() {
-  for (const SlowPair& pair : drift_.slow_pairs())
+  for (const collision::SlowPair& pair : drift_.slow_pairs())
     resting_->note(state_.particles, pair);
 }
 
 // Calls function(step) with this boundary's kicks. `before` is the kick interval that ends here.
 template<class Function> void Simulation::with_kicks(double before, const Function& function) {
   const Stopwatch watch(split_.resting);
-  std::vector<KickPart> parts;
+  std::vector<contact_solver::KickPart> parts;
   for (std::size_t f = 0; f < forces_.size(); ++f)
     if (kick_due(f)) {
       const double after = static_cast<double>(ticks_between_kicks(f)) * state_.tick();
       parts.push_back({state_.forces[f].accelerations, 0.5 * (f == 0 ? before : after), 0.5 * after,
                        &state_.forces[f].work, &state_.forces[f].azimuthal_gain});
     }
-  function(RestingStep{state_.particles, scene_.planet.frequencies, state_.box, state_.epoch_offset(),
-                       0.5 * state_.step_length, kick_interval(), newton_g(scene_.planet.orbital_frequency), parts});
+  function(contact_solver::RestingStep{state_.particles, scene_.planet.frequencies, state_.box, state_.epoch_offset(),
+                                       0.5 * state_.step_length, kick_interval(),
+                                       newton_g(scene_.planet.orbital_frequency), parts});
   undisturbed_ = false;
 }
 
@@ -178,7 +179,7 @@ void Simulation::persist_contacts(double before) {
   assert(!carries() || before > 0.0);
   if (!carries() || !kick_due(0) || resting_->idle(state_.resting))
     return;
-  with_kicks(before, [&](const RestingStep& step) {
+  with_kicks(before, [&](const contact_solver::RestingStep& step) {
     resting_->persist(state_.resting, step, scene_.collisions.friction, state_.collisions);
   });
   schedule_drift();
@@ -187,13 +188,14 @@ void Simulation::persist_contacts(double before) {
 void Simulation::persist_contacts_second_half() {
   if (state_.resting.pairs.empty() || !kick_due(0))
     return;
-  with_kicks(kick_interval(),
-             [&](const RestingStep& step) { resting_->persist_second_half(state_.resting, step, state_.collisions); });
+  with_kicks(kick_interval(), [&](const contact_solver::RestingStep& step) {
+    resting_->persist_second_half(state_.resting, step, state_.collisions);
+  });
 }
 
 // Sorts particles in memory by position every tenth of an orbit.
 void Simulation::sort_when_due() {
-  const std::int64_t longest = scene_.time.automatic ? TimeSettings::longest : 1;
+  const std::int64_t longest = scene_.time.automatic ? scene::TimeSettings::longest : 1;
   const auto intervals = std::ceil(sorting_interval / (static_cast<double>(longest) * scene_.time.step));
   const std::int64_t interval = longest * static_cast<std::int64_t>(intervals);
   if (state_.step % interval != 0)
@@ -203,13 +205,14 @@ void Simulation::sort_when_due() {
   const Stopwatch watch(split_.drift);
   drift_.release();
   undisturbed_ = false;
-  const std::vector<std::uint32_t> order = order_by_position(state_.particles, state_.box, state_.epoch_offset());
-  reorder(state_.particles.bodies, order);
-  reorder(state_.particles.ids, order);
+  const std::vector<std::uint32_t> order =
+      cells::order_by_position(state_.particles, state_.box, state_.epoch_offset());
+  cells::reorder(state_.particles.bodies, order);
+  cells::reorder(state_.particles.ids, order);
   if (state_.particles.rough)
-    reorder(state_.particles.spins, order);
+    cells::reorder(state_.particles.spins, order);
   for (ForceState& force : state_.forces)
-    reorder(force.accelerations, order);
+    cells::reorder(force.accelerations, order);
   resting_->reordered();
   find_moonlets();
 }
@@ -224,7 +227,7 @@ void Simulation::advance_epoch() {
 
 // Moves the elements to another epoch, and back into the cell by guiding centre.
 void Simulation::rebase(double time) {
-  const Rebase to_epoch(scene_.planet.frequencies, time);
+  const hill::Rebase to_epoch(scene_.planet.frequencies, time);
   const double offset = state_.epoch_offset();
   const bool with_moonlets = !state_.moonlets.empty();
   moonlet_wraps_.assign(2 * state_.moonlets.size(), 0.0);
@@ -241,7 +244,7 @@ void Simulation::rebase(double time) {
   });
   wrap_moonlets();
   if (state_.particles.rough) {
-    const FixedRotation turn(time); // of the stars relative to Hill's frame
+    const hill::FixedRotation turn(time); // of the stars relative to Hill's frame
     parallel_for(state_.particles.size(), [&](std::size_t k) {
       Vec3& spin = state_.particles.spins[k];
       turn.turn(spin.y(), spin.x());
@@ -249,14 +252,14 @@ void Simulation::rebase(double time) {
   }
 }
 
-Boundary Simulation::boundary() const {
+forces::Boundary Simulation::boundary() const {
   return {state_.particles,         scene_.planet.frequencies,
           0.5 * state_.step_length, state_.box,
           state_.boundary_offset(), state_.step,
           two_pi * orbits(),        ranks_};
 }
 
-std::optional<GravityEnergy> Simulation::gravity_energy() const {
+std::optional<gravity::GravityEnergy> Simulation::gravity_energy() const {
   return scene_.gravity ? forces_.front()->energy(boundary()) : std::nullopt; // self-gravity comes first
 }
 
@@ -300,17 +303,17 @@ void Simulation::replace(Particles particles) {
   assert(!ranks_.distributed() && state_.step % scene_.kick_interval() == 0 && particles.ids == state_.particles.ids);
   const Patch after = patch_of(particles);
   require_sound(after);
-  require_no_overlap(after, "the changed state");
-  const ParticleMeans before = means();
+  cells::require_no_overlap(after, "the changed state");
+  const diagnostics::ParticleMeans before = means();
   std::swap(state_.particles, particles);
   wrap_changed(particles);
-  const ParticleMeans now = means();
+  const diagnostics::ParticleMeans now = means();
   state_.energy.epicyclic += now.epicyclic_energy - before.epicyclic_energy;
   state_.energy.azimuthal += now.azimuthal - before.azimuthal;
   state_.energy.spin += now.spin.energy - before.spin.energy;
   drift_.release();
   undisturbed_ = false;
-  *resting_ = RestingContacts();
+  *resting_ = contact_solver::RestingContacts();
   state_.resting.pairs.clear();
   state_.resting.loads.clear();
   forces_ = make_forces(scene_, state_, ranks_);
@@ -374,11 +377,11 @@ double Simulation::largest_overlap() {
   drift_.release(); // frees memory for the search
   if (ranks_.distributed())
     return largest_overlap_distributed().depth;
-  return keeler::largest_overlap(patch()).depth;
+  return cells::largest_overlap(patch()).depth;
 }
 
-ParticleMeans Simulation::means() const {
-  return particle_means(state_.particles, scene_.planet.frequencies, -0.5 * state_.step_length, ranks_);
+diagnostics::ParticleMeans Simulation::means() const {
+  return diagnostics::particle_means(state_.particles, scene_.planet.frequencies, -0.5 * state_.step_length, ranks_);
 }
 
-} // namespace keeler
+} // namespace keeler::simulation

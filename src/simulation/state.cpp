@@ -6,13 +6,13 @@
 
 #include <cmath>
 
-namespace keeler {
+namespace keeler::simulation {
 
 SimulationState::SimulationState(const Scene& scene) : moonlets(scene.moonlets.size()) {
   const std::vector<double> gains(moonlets.size());
   if (scene.gravity)
     forces.push_back({"gravity", {}, 0.0, 0.0, gains});
-  for (const ForceSettings& force : scene.external_forces)
+  for (const scene::ForceSettings& force : scene.external_forces)
     forces.push_back({force.entry->table, {}, 0.0, 0.0, gains});
   particles.rough = scene.collisions.friction.has_value();
   carries = scene.gravity && scene.gravity->carries();
@@ -65,8 +65,9 @@ std::string SimulationState::fault(const Scene& scene, const Communicator& ranks
     if ((!force.accelerations.empty() && force.accelerations.size() != count) ||
         force.moonlet_gains.size() != moonlets.size())
       return fmt::format("the length of the arrays of {} is not its number of particles", force.name);
-  const bool whole = control.step >= 1 && control.step <= TimeSettings::longest && control.kick >= 0 &&
-                     control.kick <= TimeSettings::longest && step >= 0 && control.steps >= 0 && control.fits(step);
+  const bool whole = control.step >= 1 && control.step <= scene::TimeSettings::longest && control.kick >= 0 &&
+                     control.kick <= scene::TimeSettings::longest && step >= 0 && control.steps >= 0 &&
+                     control.fits(step);
   if (!whole)
     return fmt::format("a step of {} ticks cannot begin at tick {}", control.step, step);
   const double length = static_cast<double>(control.step) * scene.step_length();
@@ -89,7 +90,7 @@ double SimulationState::kick_work() const {
 
 // A free epicycle keeps ½κ²e² = ½c_x² + ½c_y² + (S/κ²) c_y² while d(c_y²)/dt = −κ² c_x c_y. So the time integral of the
 // translational stress follows, without sampling error, from the changes of c_y² by collisions and kicks.
-EnergyBalance SimulationState::balance(const ParticleMeans& means, const Frequencies& f) const {
+EnergyBalance SimulationState::balance(const diagnostics::ParticleMeans& means, const Frequencies& f) const {
   const double part = f.shear() / (f.kappa * f.kappa);
   double azimuthal_gain = collisions.azimuthal_gain, booked = epicyclic_gain(collisions, f);
   for (const ForceState& force : forces) {
@@ -109,4 +110,4 @@ EnergyBalance SimulationState::balance(const ParticleMeans& means, const Frequen
   return b;
 }
 
-} // namespace keeler
+} // namespace keeler::simulation

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace keeler {
+namespace keeler::simulation {
 namespace {
 
 constexpr std::uint64_t enough = 500; // contacts needed for a decision
@@ -18,14 +18,14 @@ constexpr double max_contacts = 0.5, few_contacts = 0.25; // per particle and dr
 std::int64_t kick_for(std::int64_t kick, double unresolved) {
   if (unresolved > most_unresolved)
     return std::max<std::int64_t>(1, kick / 2);
-  return unresolved < few_unresolved ? std::min(TimeSettings::longest, 2 * kick) : kick;
+  return unresolved < few_unresolved ? std::min(scene::TimeSettings::longest, 2 * kick) : kick;
 }
 
 // `rate`: contacts per particle and tick.
 std::int64_t step_for(std::int64_t step, double rate) {
   while (step > 1 && rate * static_cast<double>(step) > max_contacts)
     step /= 2;
-  while (step < TimeSettings::longest && rate * static_cast<double>(2 * step) <= few_contacts)
+  while (step < scene::TimeSettings::longest && rate * static_cast<double>(2 * step) <= few_contacts)
     step *= 2;
   return step;
 }
@@ -33,7 +33,7 @@ std::int64_t step_for(std::int64_t step, double rate) {
 } // namespace
 
 StepControl StepControl::automatic(bool with_forces) {
-  return {.step = 4, .kick = with_forces ? 16 : TimeSettings::longest};
+  return {.step = 4, .kick = with_forces ? 16 : scene::TimeSettings::longest};
 }
 
 StepControl decide_step(const StepControl& last, const CollisionTally& tally, std::size_t particles,
@@ -63,4 +63,4 @@ void StepControl::list_fields(FieldTable& table) {
   table.scalar("decided_unresolved", unresolved, "1", "of these, unresolved ones");
 }
 
-} // namespace keeler
+} // namespace keeler::simulation

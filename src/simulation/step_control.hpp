@@ -10,7 +10,7 @@
 
 #include <cstdint>
 
-namespace keeler {
+namespace keeler::simulation {
 
 /// Ticks between two decisions: a sixteenth of an orbit.
 inline constexpr std::int64_t decision_ticks = 256;
@@ -19,4 +19,4 @@ inline constexpr std::int64_t decision_ticks = 256;
 /// decision_ticks.
 StepControl decide_step(const StepControl& last, const CollisionTally& tally, std::size_t particles, std::int64_t tick);
 
-} // namespace keeler
+} // namespace keeler::simulation

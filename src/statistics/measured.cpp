@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace keeler {
+namespace keeler::statistics {
 
 Measured measured(std::optional<double> value, std::span<const double> singles) {
   Measured result;
@@ -21,4 +21,4 @@ Measured measured_direction(std::optional<double> value, std::span<const double>
   return measured(value, near);
 }
 
-} // namespace keeler
+} // namespace keeler::statistics

@@ -5,7 +5,7 @@
 #include <cassert>
 #include <vector>
 
-namespace keeler {
+namespace keeler::statistics {
 
 /// Returns the middle value, or the mean of the two middle ones. Precondition: `values` is not empty.
 inline double median(std::vector<double> values) {
@@ -15,4 +15,4 @@ inline double median(std::vector<double> values) {
   return values.size() % 2 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
-} // namespace keeler
+} // namespace keeler::statistics

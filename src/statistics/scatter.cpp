@@ -5,7 +5,7 @@
 #include <cassert>
 #include <limits>
 
-namespace keeler {
+namespace keeler::statistics {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -56,4 +56,4 @@ MeanDifference mean_difference(const Scatter& first, const Scatter& second) {
   return d;
 }
 
-} // namespace keeler
+} // namespace keeler::statistics

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-namespace keeler {
+namespace keeler::statistics {
 
 struct Scatter {
   std::size_t count = 0;
@@ -33,4 +33,4 @@ struct MeanDifference {
 
 MeanDifference mean_difference(const Scatter& first, const Scatter& second);
 
-} // namespace keeler
+} // namespace keeler::statistics

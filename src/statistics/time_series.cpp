@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-namespace keeler {
+namespace keeler::statistics {
 namespace {
 
 constexpr std::size_t batches = 256; // maximum number of bins of a series in steady_start()
@@ -114,4 +114,4 @@ bool is_steady(std::span<const double> values) {
          max_sigmas * rest.error * std::sqrt(1.0 + after / before);
 }
 
-} // namespace keeler
+} // namespace keeler::statistics

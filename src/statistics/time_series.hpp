@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <span>
 
-namespace keeler {
+namespace keeler::statistics {
 
 /// Returns the mean of values at equal intervals, and its error by blocks (Flyvbjerg & Petersen 1989, J. Chem. Phys.
 /// 91, 461): blocks of 1, 2, 4 … values are averaged until they are independent. That length B is the smallest with B³
@@ -30,4 +30,4 @@ std::size_t steady_start(std::span<const double> values);
 /// than eight values.
 bool is_steady(std::span<const double> values);
 
-} // namespace keeler
+} // namespace keeler::statistics

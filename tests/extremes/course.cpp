@@ -21,7 +21,7 @@ struct VectorSums {
   std::complex<double> e = 0.0, i = 0.0;
   double scale = 0.0; // Σ m (e + i)
 
-  VectorSums(const SimulationState& state, const Frequencies& f) {
+  VectorSums(const simulation::SimulationState& state, const Frequencies& f) {
     for (const Body& b : state.particles.bodies) {
       const Elements& el = b.elements;
       e += b.mass * std::complex<double>(el.e_cos, el.e_sin);
@@ -32,20 +32,20 @@ struct VectorSums {
     i *= back(f.nu, state);
   }
 
-  static std::complex<double> back(double frequency, const SimulationState& state) {
+  static std::complex<double> back(double frequency, const simulation::SimulationState& state) {
     const long double turn = static_cast<long double>(frequency * state.step_length) * state.step;
     return std::polar(1.0, -static_cast<double>(std::fmod(turn, 2.0L * std::numbers::pi_v<long double>)));
   }
 };
 
-double energy_scale(const SimulationState& state, const Frequencies& f) {
+double energy_scale(const simulation::SimulationState& state, const Frequencies& f) {
   double sum = 0.0;
   for (const Body& b : state.particles.bodies)
     sum += b.mass * (std::pow(b.elements.eccentricity(), 2) + std::pow(f.nu * b.elements.inclination(), 2));
   return sum;
 }
 
-double smallest_radius(const SimulationState& state) {
+double smallest_radius(const simulation::SimulationState& state) {
   double smallest = 1e300;
   for (const Body& b : state.particles.bodies)
     smallest = std::min(smallest, b.radius);
@@ -68,7 +68,7 @@ Example example(const std::string& name, const std::string& scene, const std::ve
 
 Course follow(Simulation& simulation, std::int64_t steps, int looks) {
   const Frequencies f = simulation.patch().frequencies;
-  const SimulationState& state = simulation.state();
+  const simulation::SimulationState& state = simulation.state();
   const VectorSums before(state, f);
   Course course;
   course.steps = steps;
@@ -79,7 +79,7 @@ Course follow(Simulation& simulation, std::int64_t steps, int looks) {
     const auto hits = static_cast<double>(contacts_of(simulation) - so_far);
     course.worst_step = std::max(course.worst_step, 2.0 * hits / static_cast<double>(state.particles.size()));
     if (k % std::max<std::int64_t>(1, steps / looks) == 0)
-      course.overlap = std::max(course.overlap, largest_overlap(simulation.patch()).depth);
+      course.overlap = std::max(course.overlap, cells::largest_overlap(simulation.patch()).depth);
   }
   const VectorSums after(state, f);
   course.collisions = contacts_of(simulation);
@@ -113,7 +113,7 @@ AgainstPlain& AgainstPlain::operator+=(const AgainstPlain& more) {
   return *this;
 }
 
-AgainstPlain against_plain(test::Ring& ring, const CollisionSettings& settings, int steps) {
+AgainstPlain against_plain(test::Ring& ring, const collision::CollisionSettings& settings, int steps) {
   test::PlainDrift plain(settings, ring.frequencies, test::omega, ring.step);
   ring.keeps_neighbours = true;
   AgainstPlain course;
@@ -125,7 +125,7 @@ AgainstPlain against_plain(test::Ring& ring, const CollisionSettings& settings, 
     if (!test::same_bits(ring.particles, copy) || !test::same_bits(tally, plain_tally))
       ++course.differing;
     ring.move_on();
-    course.overlap = std::max(course.overlap, largest_overlap(ring.patch()).depth);
+    course.overlap = std::max(course.overlap, cells::largest_overlap(ring.patch()).depth);
   }
   return course;
 }

@@ -43,7 +43,7 @@ struct AgainstPlain {
   double overlap = 0.0;
   AgainstPlain& operator+=(const AgainstPlain& more);
 };
-AgainstPlain against_plain(test::Ring& ring, const CollisionSettings& settings, int steps);
+AgainstPlain against_plain(test::Ring& ring, const collision::CollisionSettings& settings, int steps);
 std::vector<Row> rows_of(const State& state, const AgainstPlain& course, double rounding, double least);
 
 } // namespace keeler::extremes

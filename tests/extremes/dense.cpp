@@ -108,8 +108,8 @@ std::vector<Row> restitution(double value) {
                     fmt::format("40 spheres in a box of 10 x 10 radii, κ = {}, steps of 1e-2 orbit, until each has "
                                 "collided 1e4 times",
                                 elastic ? 2 : 1)};
-  CollisionSettings settings;
-  settings.restitution = constant_restitution(value);
+  collision::CollisionSettings settings;
+  settings.restitution = collision::constant_restitution(value);
   test::RandomVectors random(7);
   std::vector<Sphere> spheres;
   for (int k = 0; k < 40; ++k)
@@ -125,7 +125,7 @@ std::vector<Row> restitution(double value) {
     contacts = ring.tally.fast + ring.tally.slow;
     largest = std::max(largest, epicyclic(ring));
     if (ring.steps % 1000 == 0)
-      overlap = std::max(overlap, largest_overlap(ring.patch()).depth);
+      overlap = std::max(overlap, cells::largest_overlap(ring.patch()).depth);
   }
   const double open = epicyclic(ring) - start - epicyclic_gain(ring.tally, ring.frequencies);
   return {at_least(state, "contacts of a particle", 2.0 * static_cast<double>(contacts) / 40.0, 1e4,

@@ -27,11 +27,11 @@ std::vector<std::string> with(std::vector<std::string> keys, const std::vector<s
   return keys;
 }
 
-std::unique_ptr<GravitySolver> solver_of(const Scene& scene, const Patch& patch) {
+std::unique_ptr<gravity::GravitySolver> solver_of(const Scene& scene, const Patch& patch) {
   return make_gravity_solver(*scene.gravity, patch.masses, patch.box.area());
 }
 
-GravityProblem problem_of(const Patch& patch, double newton_g) {
+gravity::GravityProblem problem_of(const Patch& patch, double newton_g) {
   return {patch.positions, patch.masses, patch.ids, patch.box, patch.offset, newton_g};
 }
 
@@ -69,7 +69,7 @@ std::vector<Row> without_g() {
 
 // Rms of the error over the rms force, against the exact sum.
 double force_error(const Scene& scene, const Patch& patch) {
-  const GravityProblem problem = problem_of(patch, newton_g(scene.planet.orbital_frequency));
+  const gravity::GravityProblem problem = problem_of(patch, newton_g(scene.planet.orbital_frequency));
   std::vector<Vec3> accelerations(patch.size());
   solver_of(scene, patch)->accelerate(problem, accelerations);
   std::vector<std::size_t> all(patch.size());
@@ -130,7 +130,7 @@ std::vector<Row> aggregate() {
   const Patch patch = simulation.patch();
   std::vector<Row> rows = rows_of(e.state, course, 1e5);
   rows.push_back(at_least(e.state, "share of the mass in the largest cluster",
-                          analyze_clusters({&patch, 1}).largest_mass_fraction, 0.95,
+                          diagnostics::analyze_clusters({&patch, 1}).largest_mass_fraction, 0.95,
                           "a few grains may be off the heap"));
   rows.push_back(
       at_most(e.state, "contacts of a particle in the worst step", course.worst_step, 300.0, "a storm has 1e5"));

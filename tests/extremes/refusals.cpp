@@ -65,8 +65,8 @@ void storm() {
   std::vector<Sphere> row;
   for (int k = 0; k < 3; ++k)
     row.push_back({{0, 2.0 * k - 3.0, 0}, {0, k == 0 ? 1.0 : 0.0, 0}});
-  CollisionSettings settings;
-  settings.restitution = constant_restitution(1.0);
+  collision::CollisionSettings settings;
+  settings.restitution = collision::constant_restitution(1.0);
   Ring ring(test::patch_of(row, 20.0, 6.0), settings, two_pi * 1e-3);
   ring.advance();
 }

@@ -54,7 +54,7 @@ Row refused(const State& state, const std::function<void()>& attempt, int code, 
 }
 
 Row shown_by(const std::string& what, const std::string& file, const std::string& test_case, const std::string& why) {
-  const std::string text = read_text(std::string(KEELER_SOURCE_DIR) + "/tests/unit/" + file);
+  const std::string text = files::read_text(std::string(KEELER_SOURCE_DIR) + "/tests/unit/" + file);
   const bool there = text.find("TEST_CASE(\"" + test_case) != std::string::npos;
   return {what, there ? "a test of each build" : "there is no such test", "that test", there,
           why,  fmt::format("tests/unit/{}: {}", file, test_case)};

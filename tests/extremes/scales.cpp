@@ -135,7 +135,7 @@ std::vector<Row> few() {
       double overlap = 0.0;
       for (int k = 0; k < 1000; ++k) {
         simulation.advance();
-        overlap = std::max(overlap, largest_overlap(simulation.patch()).depth);
+        overlap = std::max(overlap, cells::largest_overlap(simulation.patch()).depth);
       }
       const CollisionTally& tally = simulation.state().collisions;
       const auto contacts = static_cast<double>(tally.fast + tally.slow);

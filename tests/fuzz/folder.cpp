@@ -34,7 +34,7 @@ std::map<std::string, std::string> files_in(const fs::path& folder) {
   std::map<std::string, std::string> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
     if (entry.is_regular_file())
-      files[entry.path().filename()] = read_text(entry.path());
+      files[entry.path().filename()] = files::read_text(entry.path());
   return files;
 }
 
@@ -42,10 +42,10 @@ std::map<std::string, std::string> files_in(const fs::path& folder) {
 std::map<std::string, std::string> stopped_run(const fs::path& folder) {
   const std::string moonlet = "moonlet = [{ radius = 2.0, density = 900.0 }]\noutput.collisions = {}\n";
   const Scene scene = parse_scene(small_scene() + moonlet, "scene.toml");
-  RunOptions options;
+  runs::RunOptions options;
   options.folder = folder;
   options.force = true;
-  RunRequests requests;
+  runs::RunRequests requests;
   start_run(scene, options, requests);
   return files_in(folder);
 }
@@ -54,7 +54,7 @@ std::map<std::string, std::string> stopped_run(const fs::path& folder) {
 void change(const fs::path& file, Draw& draw) {
   std::string text;
   if (fs::is_regular_file(file))
-    text = read_text(file);
+    text = files::read_text(file);
   const std::size_t kind = draw.below(5), place = draw.place();
   if (kind == 0) {
     fs::remove(file);
@@ -86,17 +86,17 @@ void resume_folder(std::string_view input, const fs::path& folder) {
   const bool further = draw.byte() % 2 == 0;
   while (!draw.empty())
     change(run / file_names[draw.below(file_names.size())], draw);
-  for (const auto look :
-       {+[](const fs::path& path) { view_run(path); }, +[](const fs::path& path) { load_newest_patch(path); }})
+  for (const auto look : {+[](const fs::path& path) { runs::view_run(path); },
+                          +[](const fs::path& path) { runs::load_newest_patch(path); }})
     try {
       look(run);
     } catch (const Error&) { // what cannot be looked at may still be resumed
     }
-  RunOptions options;
+  runs::RunOptions options;
   options.folder = run;
   if (further)
     options.until_orbits = 0.008;
-  RunRequests requests;
+  runs::RunRequests requests;
   resume_run(options, requests);
 }
 

@@ -30,7 +30,7 @@ void add_attributes(hid_t object, Names& names) {
   H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &names);
 }
 
-Names all_names(const hdf5::Handle& file) {
+Names all_names(const io::hdf5::Handle& file) {
   Names names;
   const auto add = [](hid_t root, const char* name, const H5O_info_t*, void* list) -> herr_t {
     Names& all = *static_cast<Names*>(list);
@@ -142,10 +142,10 @@ bool holds_pointers(hid_t type) {
 }
 
 // A new dataset; unwritten where its type holds pointers or it is larger than what there is to write.
-void put_dataset(const hdf5::Handle& file, const std::string& name, Draw& draw) {
+void put_dataset(const io::hdf5::Handle& file, const std::string& name, Draw& draw) {
   hsize_t count = 0;
-  const hdf5::Handle type(pick_type(draw), H5Tclose), space(pick_space(draw, count), H5Sclose);
-  const hdf5::Handle list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  const io::hdf5::Handle type(pick_type(draw), H5Tclose), space(pick_space(draw, count), H5Sclose);
+  const io::hdf5::Handle list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   const bool large = count > 4096;
   if (large) {
     const std::array<hsize_t, 3> chunk = {8, 8, 8};
@@ -156,18 +156,18 @@ void put_dataset(const hdf5::Handle& file, const std::string& name, Draw& draw) 
   const hid_t made = H5Dcreate2(file.id(), name.c_str(), type.id(), space.id(), H5P_DEFAULT, list.id(), H5P_DEFAULT);
   if (made < 0)
     return;
-  const hdf5::Handle dataset(made, H5Dclose);
+  const io::hdf5::Handle dataset(made, H5Dclose);
   if (!large && count * H5Tget_size(type.id()) <= values.size() * sizeof(double) && !holds_pointers(type.id()))
     H5Dwrite(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
 }
 
-void put_attribute(const hdf5::Handle& file, const std::string& object_name, const std::string& name, Draw& draw) {
+void put_attribute(const io::hdf5::Handle& file, const std::string& object_name, const std::string& name, Draw& draw) {
   const hid_t opened = object_name.empty() ? -1 : H5Oopen(file.id(), object_name.c_str(), H5P_DEFAULT);
   if (opened < 0)
     return;
-  const hdf5::Handle object(opened, H5Oclose);
+  const io::hdf5::Handle object(opened, H5Oclose);
   hsize_t count = 0;
-  const hdf5::Handle type(pick_type(draw), H5Tclose), space(pick_space(draw, count), H5Sclose);
+  const io::hdf5::Handle type(pick_type(draw), H5Tclose), space(pick_space(draw, count), H5Sclose);
   const std::vector<double> values = pick_values(draw);
   H5Adelete(object.id(), name.c_str());
   if (count > 4096)
@@ -175,18 +175,18 @@ void put_attribute(const hdf5::Handle& file, const std::string& object_name, con
   const hid_t made = H5Acreate2(object.id(), name.c_str(), type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT);
   if (made < 0)
     return;
-  const hdf5::Handle attribute(made, H5Aclose);
+  const io::hdf5::Handle attribute(made, H5Aclose);
   if (count * H5Tget_size(type.id()) <= values.size() * sizeof(double) && !holds_pointers(type.id()))
     H5Awrite(attribute.id(), type.id(), values.data());
 }
 
 // One number of an array of the file, in place.
-void change_value(const hdf5::Handle& file, const std::string& name, Draw& draw) {
+void change_value(const io::hdf5::Handle& file, const std::string& name, Draw& draw) {
   const hid_t opened = name.empty() ? -1 : H5Dopen2(file.id(), name.c_str(), H5P_DEFAULT);
   if (opened < 0)
     return;
-  const hdf5::Handle dataset(opened, H5Dclose);
-  const hdf5::Layout layout = hdf5::layout_of_dataset(dataset);
+  const io::hdf5::Handle dataset(opened, H5Dclose);
+  const io::hdf5::Layout layout = io::hdf5::layout_of_dataset(dataset);
   if (layout.type == "text" || layout.type == "other" || layout.count() == 0 || layout.count() > 4096)
     return;
   std::vector<double> values(layout.count());
@@ -196,27 +196,27 @@ void change_value(const hdf5::Handle& file, const std::string& name, Draw& draw)
   H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
 }
 
-void put_text(const hdf5::Handle& file, const std::string& object_name, const std::string& name, Draw& draw) {
+void put_text(const io::hdf5::Handle& file, const std::string& object_name, const std::string& name, Draw& draw) {
   const hid_t opened = object_name.empty() ? -1 : H5Oopen(file.id(), object_name.c_str(), H5P_DEFAULT);
   if (opened < 0)
     return;
-  const hdf5::Handle object(opened, H5Oclose);
+  const io::hdf5::Handle object(opened, H5Oclose);
   H5Adelete(object.id(), name.c_str());
-  hdf5::write_attribute(object, name, draw.bytes());
+  io::hdf5::write_attribute(object, name, draw.bytes());
 }
 
 // A piece of a text dataset.
-void change_text(const hdf5::Handle& file, const std::string& name, Draw& draw) {
+void change_text(const io::hdf5::Handle& file, const std::string& name, Draw& draw) {
   if (name.empty() || H5Lexists(file.id(), name.c_str(), H5P_DEFAULT) <= 0)
     return;
-  std::string text = hdf5::read_text_dataset(file, name);
+  std::string text = io::hdf5::read_text_dataset(file, name);
   const std::size_t place = draw.place() % (text.size() + 1), length = draw.byte();
   text.replace(place, length, draw.bytes());
   H5Ldelete(file.id(), name.c_str(), H5P_DEFAULT);
-  hdf5::write_text_dataset(file, name, text);
+  io::hdf5::write_text_dataset(file, name, text);
 }
 
-void edit_once(const hdf5::Handle& file, const Names& names, Draw& draw) {
+void edit_once(const io::hdf5::Handle& file, const Names& names, Draw& draw) {
   const std::size_t kind = draw.below(10);
   const std::string name = pick(draw, names.objects);
   switch (kind) {
@@ -261,23 +261,23 @@ void edit_once(const hdf5::Handle& file, const Names& names, Draw& draw) {
 } // namespace
 
 std::vector<std::byte> unsealed(const std::filesystem::path& file) {
-  std::vector<std::byte> bytes = read_file(file);
+  std::vector<std::byte> bytes = files::read_file(file);
   bytes.resize(bytes.size() - seal_size);
   return bytes;
 }
 
-hdf5::Handle open_to_edit(const std::vector<std::byte>& content) {
+io::hdf5::Handle open_to_edit(const std::vector<std::byte>& content) {
   static unsigned long count = 0; // HDF5 takes two files of one name for the same
-  const hdf5::Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  const io::hdf5::Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fapl_core(access.id(), 1 << 16, false);
   H5Pset_file_image(access.id(), const_cast<std::byte*>(content.data()), content.size());
   const std::string name = "edited-" + std::to_string(count++);
-  return {hdf5::checked("open a file to edit", [&] { return H5Fopen(name.c_str(), H5F_ACC_RDWR, access.id()); }),
+  return {io::hdf5::checked("open a file to edit", [&] { return H5Fopen(name.c_str(), H5F_ACC_RDWR, access.id()); }),
           H5Fclose};
 }
 
-void edit(const hdf5::Handle& file, Draw& draw) {
-  const hdf5::Quiet quiet;
+void edit(const io::hdf5::Handle& file, Draw& draw) {
+  const io::hdf5::Quiet quiet;
   const Names names = all_names(file);
   for (std::size_t k = 0; k < max_edits && !draw.empty(); ++k)
     try {
@@ -286,33 +286,33 @@ void edit(const hdf5::Handle& file, Draw& draw) {
     }
 }
 
-std::string content_of(const hdf5::Handle& file) {
-  hdf5::checked("complete a file", [&] { return H5Fflush(file.id(), H5F_SCOPE_LOCAL); });
-  std::string content(hdf5::used_size(file), '\0');
-  hdf5::checked("copy a file", [&] { return H5Fget_file_image(file.id(), content.data(), content.size()); });
+std::string content_of(const io::hdf5::Handle& file) {
+  io::hdf5::checked("complete a file", [&] { return H5Fflush(file.id(), H5F_SCOPE_LOCAL); });
+  std::string content(io::hdf5::used_size(file), '\0');
+  io::hdf5::checked("copy a file", [&] { return H5Fget_file_image(file.id(), content.data(), content.size()); });
   return content;
 }
 
-void renew_checksum(const hdf5::Handle& file) {
-  if (!hdf5::exists(file, "fields"))
+void renew_checksum(const io::hdf5::Handle& file) {
+  if (!io::hdf5::exists(file, "fields"))
     return;
-  const hdf5::Handle group = hdf5::open_group(file, "fields");
-  Hash hash;
-  for (const std::string& name : hdf5::names_in(group)) {
-    const hdf5::Handle dataset = hdf5::open_dataset(group, name);
-    const hdf5::Layout layout = hdf5::layout_of_dataset(dataset);
-    const hdf5::Handle type(H5Dget_type(dataset.id()), H5Tclose);
+  const io::hdf5::Handle group = io::hdf5::open_group(file, "fields");
+  io::Hash hash;
+  for (const std::string& name : io::hdf5::names_in(group)) {
+    const io::hdf5::Handle dataset = io::hdf5::open_dataset(group, name);
+    const io::hdf5::Layout layout = io::hdf5::layout_of_dataset(dataset);
+    const io::hdf5::Handle type(H5Dget_type(dataset.id()), H5Tclose);
     std::vector<std::byte> bytes(layout.count() * H5Tget_size(type.id()));
-    hdf5::read_dataset(dataset, type.id(), bytes.data());
+    io::hdf5::read_dataset(dataset, type.id(), bytes.data());
     hash.add_text(name);
     hash.add_text(layout.shape.empty() ? layout.type
                                        : fmt::format("{} [{}]", layout.type, fmt::join(layout.shape, " x ")));
     hash.add_bytes(bytes);
   }
-  hash.add_text(hdf5::read_text_dataset(file, "scene"));
-  const hdf5::Quiet quiet;
+  hash.add_text(io::hdf5::read_text_dataset(file, "scene"));
+  const io::hdf5::Quiet quiet;
   H5Adelete(file.id(), "checksum");
-  hdf5::write_attribute(file, "checksum", hash.hex());
+  io::hdf5::write_attribute(file, "checksum", hash.hex());
 }
 
 } // namespace keeler::fuzz

@@ -16,16 +16,16 @@ namespace keeler::fuzz {
 std::vector<std::byte> unsealed(const std::filesystem::path& file);
 
 /// Opens a file from its bytes to be changed, in memory alone.
-hdf5::Handle open_to_edit(const std::vector<std::byte>& content);
+io::hdf5::Handle open_to_edit(const std::vector<std::byte>& content);
 
 /// Its bytes as they are now.
-std::string content_of(const hdf5::Handle& file);
+std::string content_of(const io::hdf5::Handle& file);
 
 /// Makes the edits that an input asks for; one that the library refuses is left out.
-void edit(const hdf5::Handle& file, Draw& draw);
+void edit(const io::hdf5::Handle& file, Draw& draw);
 
 /// Makes the checksum of a checkpoint that of its fields and its scene as they are now (docs/formats.md); does nothing
 /// to another file.
-void renew_checksum(const hdf5::Handle& file);
+void renew_checksum(const io::hdf5::Handle& file);
 
 } // namespace keeler::fuzz

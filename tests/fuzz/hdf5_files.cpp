@@ -36,10 +36,10 @@ template<class Read> bool reads(const Read& read) {
 
 // All that commands do with a file whose name they are given.
 void read_all(const fs::path& file) {
-  reads([&] { require_possible(read_snapshot(file).patch, file.string()); });
-  reads([&] { describe_file(file); });
-  reads([&] { read_contacts(file); });
-  reads([&] { read_particle_table(file); });
+  reads([&] { initial_conditions::require_possible(io::read_snapshot(file).patch, file.string()); });
+  reads([&] { io::describe_file(file); });
+  reads([&] { io::read_contacts(file); });
+  reads([&] { io::read_particle_table(file); });
 }
 
 // The content of a file that a target of this process starts from.
@@ -51,18 +51,18 @@ template<class Write> std::vector<std::byte> content_written(const fs::path& fol
 
 void write_edited(const fs::path& file, const std::vector<std::byte>& pristine, std::string_view input) {
   Draw draw(input);
-  const hdf5::Handle image = open_to_edit(pristine);
+  const io::hdf5::Handle image = open_to_edit(pristine);
   edit(image, draw);
   reads([&] { renew_checksum(image); }); // of fields that cannot be read there is none
   const std::string content = content_of(image);
-  put(file, content + seal_of(std::as_bytes(std::span(content))));
+  put(file, content + io::seal_of(std::as_bytes(std::span(content))));
 }
 
 } // namespace
 
 void read_edited_snapshot(std::string_view input, const fs::path& folder) {
   static const std::vector<std::byte> pristine = content_written(folder, [](const fs::path& file) {
-    write_snapshot(file, small_patch(), {small_scene(), {{"version", "1"}}, {{"orbits", {1.0}}}});
+    io::write_snapshot(file, small_patch(), {small_scene(), {{"version", "1"}}, {{"orbits", {1.0}}}});
   });
   const fs::path file = folder / "snap_000000.hdf";
   write_edited(file, pristine, input);
@@ -72,12 +72,12 @@ void read_edited_snapshot(std::string_view input, const fs::path& folder) {
 void read_edited_checkpoint(std::string_view input, const fs::path& folder) {
   static const std::vector<std::byte> pristine = content_written(folder, [](const fs::path& file) {
     const Scene scene = parse_scene(small_scene(), "scene.toml");
-    store_checkpoint(file, Simulation(scene, small_patch()).state(), scene);
+    runs::store_checkpoint(file, Simulation(scene, small_patch()).state(), scene);
   });
   const fs::path file = folder / "checkpoint_000000.h5";
   write_edited(file, pristine, input);
-  reads([&] { describe_file(file); });
-  StoredRun run = load_checkpoint(file);
+  reads([&] { io::describe_file(file); });
+  runs::StoredRun run = runs::load_checkpoint(file);
   if (reads([&] { require_sound(Simulation(run.scene, run.state).patch()); }))
     Simulation(run.scene, std::move(run.state)).means();
 }
@@ -88,7 +88,7 @@ void read_foreign(std::string_view input, const fs::path& folder) {
 }
 
 void read_foreign_here(std::string_view input, const fs::path& folder) {
-  put(folder / "foreign.hdf", std::string(input) + seal_of(std::as_bytes(std::span(input))));
+  put(folder / "foreign.hdf", std::string(input) + io::seal_of(std::as_bytes(std::span(input))));
   read_all(folder / "foreign.hdf");
 }
 

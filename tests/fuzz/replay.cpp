@@ -54,7 +54,7 @@ std::string changed(std::string text, std::mt19937_64& draw) {
 void replay(const Target& target, const std::vector<fs::path>& files, const fs::path& folder) {
   std::vector<std::string> inputs;
   for (const fs::path& file : files) {
-    inputs.push_back(keeler::read_text(file));
+    inputs.push_back(keeler::files::read_text(file));
     std::printf("%s %s\n", target.name.data(), file.filename().c_str()); // the last line names what breaks
     std::fflush(stdout);
     keeler::fuzz::run(target.replayed, inputs.back(), folder);

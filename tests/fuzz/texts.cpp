@@ -22,10 +22,10 @@ namespace {
 
 // What follows from a scene, and the promise that its resolved text is a scene that says the same.
 void look_at(const Scene& scene, const std::string& name) {
-  derive(scene);
-  warnings(scene);
+  advice::derive(scene);
+  advice::warnings(scene);
   try {
-    parse_stored_scene(scene.resolved, name);
+    scene::parse_stored_scene(scene.resolved, name);
     if (parse_scene(scene.resolved, name).resolved != scene.resolved)
       std::abort();
   } catch (const Error& error) {
@@ -49,7 +49,7 @@ std::vector<std::string> lines_of(std::string_view text, std::size_t most) {
 void read_scene(std::string_view input, const std::filesystem::path& folder) {
   const std::string text(input), name = folder / "scene.toml";
   try {
-    parse_table_scene(text, name);
+    scene::parse_table_scene(text, name);
   } catch (const Error&) { // what it lacks as the scene of a table it may have as another
   }
   look_at(parse_scene(text, name), name);
@@ -72,21 +72,22 @@ void read_radii(std::string_view input, const std::filesystem::path& folder) {
 void read_table(std::string_view input, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "table.csv", again = folder / "again.csv";
   put(file, input);
-  const Patch patch = patch_from_table(read_particle_table(file), parse_table_scene(small_scene(), folder / "s.toml"));
-  write_particle_table(again, patch);
-  if (read_particle_table(again).radii != patch.radii)
+  const Patch patch = initial_conditions::patch_from_table(io::read_particle_table(file),
+                                                           scene::parse_table_scene(small_scene(), folder / "s.toml"));
+  io::write_particle_table(again, patch);
+  if (io::read_particle_table(again).radii != patch.radii)
     std::abort();
 }
 
 void read_series_file(std::string_view input, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "series.csv";
   put(file, input);
-  const SeriesTable series = read_series(file);
-  if (enough_rows(series))
-    transport(series, {.mass = 1e3, .orbital_frequency = 1e-4}, {});
-  Series::resume(file, {series.names.begin() + 1, series.names.end()}, 3)
+  const io::SeriesTable series = io::read_series(file);
+  if (runs::enough_rows(series))
+    runs::transport(series, {.mass = 1e3, .orbital_frequency = 1e-4}, {});
+  io::Series::resume(file, {series.names.begin() + 1, series.names.end()}, 3)
       .append(4, std::vector<double>(series.names.size() - 1, std::numeric_limits<double>::max())); // later than all
-  read_series(file);
+  io::read_series(file);
 }
 
 } // namespace keeler::fuzz

@@ -31,7 +31,7 @@ double largest_share(double hill_parameter) {
   while (simulation.orbits() < 1.0)
     simulation.advance();
   const Patch patch = simulation.patch();
-  return analyze_clusters(std::span(&patch, 1), gap).largest_mass_fraction;
+  return diagnostics::analyze_clusters(std::span(&patch, 1), gap).largest_mass_fraction;
 }
 
 } // namespace

@@ -27,9 +27,9 @@ struct Range {
 };
 
 void clump(const char* name, const Range& contrast, const Range& wavelength) {
-  const ClumpedState state = clumped_state(example(name));
-  const Clumping& c = state.clumping;
-  const Analysis a = analyze(std::span(&state.patch, 1));
+  const initial_conditions::ClumpedState state = initial_conditions::clumped_state(example(name));
+  const initial_conditions::Clumping& c = state.clumping;
+  const diagnostics::Analysis a = diagnostics::analyze(std::span(&state.patch, 1));
   const double across = c.settling.wavelength.mean() / a.critical_wavelength_m;
   MESSAGE(std::string(name) << ": " << c.orbits << " orbits, contrast " << c.settling.contrast << ", the state's "
                             << a.wakes.contrast << ", lambda_perp " << across << " lambda_cr, Q " << a.toomre_q);
@@ -42,22 +42,22 @@ void clump(const char* name, const Range& contrast, const Range& wavelength) {
   REQUIRE(a.wake_pitch_degrees.has_value());
   CHECK(*a.wake_pitch_degrees > 0.0); // trailing; single states of three seeds had 8–50°
   CHECK(*a.wake_pitch_degrees < 60.0);
-  CHECK(largest_overlap(state.patch).depth < 1e-9);
+  CHECK(cells::largest_overlap(state.patch).depth < 1e-9);
 }
 
 // Of the orbits to come, m² rad⁻¹.
 double viscosity_after(const Scene& scene, const Patch& patch, double orbits) {
   Simulation simulation(scene, patch);
   const auto work = [&] {
-    const EnergyBalance balance = simulation.balance();
+    const simulation::EnergyBalance balance = simulation.balance();
     return balance.lost + balance.energy + simulation.gravity_energy()->potential;
   };
   const double before = work();
   const long steps = std::lround(orbits / scene.time.step);
   for (long k = 0; k < steps; ++k)
     simulation.advance();
-  return loss_viscosity(work() - before, simulation.means().mass, patch.box.shear,
-                        two_pi * scene.time.step * static_cast<double>(steps));
+  return diagnostics::loss_viscosity(work() - before, simulation.means().mass, patch.box.shear,
+                                     two_pi * scene.time.step * static_cast<double>(steps));
 }
 
 // r_h is the Hill radius of a pair over the sum of its radii.
@@ -71,8 +71,8 @@ void stays(const Ring& ring, std::uint64_t seed) {
                                                 fmt::format("particles.density={}", ring.density),
                                                 fmt::format("box.size_in_wavelengths=[{0},{0}]", ring.wavelengths),
                                                 fmt::format("particles.seed={}", seed)});
-  const ClumpedState state = clumped_state(scene);
-  const Clumping& c = state.clumping;
+  const initial_conditions::ClumpedState state = initial_conditions::clumped_state(scene);
+  const initial_conditions::Clumping& c = state.clumping;
   const double accepted = c.settling.viscosity.mean(), next = viscosity_after(scene, state.patch, 4.0);
   MESSAGE("r_h " << ring.r_h << ", seed " << seed << ": settled at " << c.orbits << " orbits, viscosity " << accepted
                  << " m2/rad, errors " << c.settling.viscosity.before.error << " and "

@@ -41,17 +41,17 @@ TEST_CASE("the energy budget of a self-gravitating patch closes to rounding, and
     Simulation simulation(scene, initial_patch(scene));
     for (int k = 0; k < 500; ++k)
       simulation.advance();
-    const SimulationState& state = simulation.state();
+    const simulation::SimulationState& state = simulation.state();
     CHECK(state.collisions.fast > 1000);
     CHECK(state.kick_work() != 0.0);
-    const EnergyBalance b = simulation.balance();
+    const simulation::EnergyBalance b = simulation.balance();
     CHECK(b.translational_flux != 0.0);
     // roundings of thousands of collisions
     CHECK(std::fabs(b.residual) < 1e-12 * b.lost);
     const double shear = scene.planet.frequencies.shear();
     const double gained = shear * (b.translational_flux + b.collisional_flux) + b.kick_work + b.resting_work - b.lost;
     CHECK(b.energy - b.start == doctest::Approx(gained).epsilon(1e-10));
-    CHECK(largest_overlap(simulation.patch()).depth < 1e-9);
+    CHECK(cells::largest_overlap(simulation.patch()).depth < 1e-9);
   }
 }
 
@@ -62,9 +62,9 @@ TEST_CASE("with rough spheres the spins' energy is in the budget, and it closes"
     Simulation simulation(scene, initial_patch(scene));
     for (int k = 0; k < 300; ++k)
       simulation.advance();
-    const EnergyBalance b = simulation.balance();
+    const simulation::EnergyBalance b = simulation.balance();
     CHECK(simulation.state().collisions.fast > 1000);
-    const ParticleMeans means = simulation.means();
+    const diagnostics::ParticleMeans means = simulation.means();
     CHECK(std::fabs(means.spin.energy - simulation.state().energy.spin) > 1e-3 * b.lost);
     CHECK(std::fabs(b.residual) < 1e-12 * b.lost);
     const double shear = scene.planet.frequencies.shear();
@@ -79,7 +79,7 @@ TEST_CASE("elastic spheres without gravity gain the work of the shear, no more a
   for (int k = 0; k < 400; ++k)
     simulation.advance();
   CHECK(simulation.state().collisions.energy_lost == 0.0);
-  const EnergyBalance b = simulation.balance();
+  const simulation::EnergyBalance b = simulation.balance();
   CHECK(std::fabs(b.residual) < 1e-12 * b.energy);
   const double shear = scene.planet.frequencies.shear();
   CHECK(b.energy - b.start == doctest::Approx(shear * (b.translational_flux + b.collisional_flux)).epsilon(1e-10));
@@ -93,7 +93,7 @@ TEST_CASE("the translational flux is the time integral of sum m c_x c_y, sampled
     const Patch patch = simulation.patch();
     double sum = 0.0;
     for (std::size_t k = 0; k < patch.size(); ++k) {
-      const Vec3 c = peculiar_velocity(patch, k);
+      const Vec3 c = diagnostics::peculiar_velocity(patch, k);
       sum += patch.masses[k] * c.x() * c.y();
     }
     return sum;

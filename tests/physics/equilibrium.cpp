@@ -65,7 +65,7 @@ TEST_CASE("in the steady state collisions lose what the viscous stress gains: (9
   const Scene scene = spheres(0.5, 1500, 5e-3, half, 3, 2.1);
   Simulation simulation(scene, initial_patch(scene));
   settle_and_average(simulation, scene, 12.0, 1.0);
-  const SimulationState first = simulation.state();
+  const simulation::SimulationState first = simulation.state();
   double translational = 0.0;
   constexpr int samples = 600;
   for (int k = 0; k < samples; ++k) { // 15 orbits
@@ -75,7 +75,7 @@ TEST_CASE("in the steady state collisions lose what the viscous stress gains: (9
     for (std::size_t i = 0; i < patch.size(); ++i)
       translational += patch.velocities[i].x() * (patch.velocities[i].y() + 1.5 * patch.positions[i].x());
   }
-  const SimulationState& last = simulation.state();
+  const simulation::SimulationState& last = simulation.state();
   const double count = static_cast<double>(last.particles.size()), mass = count * last.particles.bodies[0].mass;
   const double time = static_cast<double>(last.step - first.step) * last.step_length;
   const double viscosity = 2.0 / 3.0 *

@@ -18,8 +18,8 @@ namespace {
 constexpr double orbits = 6.0;
 constexpr Frequencies frequencies{1.0, 1.0};
 
-PerturbedRing ring_of(double step_orbits, std::uint64_t seed = 1) {
-  PerturbedRing ring;
+study::PerturbedRing ring_of(double step_orbits, std::uint64_t seed = 1) {
+  study::PerturbedRing ring;
   ring.step_orbits = step_orbits;
   ring.orbits = orbits;
   ring.samples = 1;
@@ -45,7 +45,7 @@ Scatter scatter(const std::vector<double>& values) {
 // Predicts, from a run with exact collisions, the drift that straight paths would cause: at each collision it adds the
 // displacement from the orbit of a straight line that began at the start of the step or at the particle's previous
 // collision. A displacement δx changes X by 4 δx, and δz the height by δz.
-class StraightForecast final : public DriftObserver {
+class StraightForecast final : public collision::DriftObserver {
 public:
   explicit StraightForecast(std::size_t particles) : particles_(static_cast<double>(particles)) {}
 
@@ -53,7 +53,7 @@ public:
   double guiding_x() const { return guiding_x_ / particles_; }
   double vertical() const { return vertical_ / particles_; }
 
-  void begins(const DriftStep& step) override {
+  void begins(const finders::DriftStep& step) override {
     epoch_ += epoch_ > 0.0 ? step.end - step.begin : step.end;
     bodies_ = step.bodies;
     orbits_.resize(bodies_.size());
@@ -62,7 +62,7 @@ public:
       orbits_[k] = bodies_[k].elements;
   }
 
-  void collided(const CollisionRecord& record) override { time_ = record.time; }
+  void collided(const collision::CollisionRecord& record) override { time_ = record.time; }
 
   void changed(std::size_t k) override {
     assert(k < orbits_.size() && time_ >= since_[k]);
@@ -90,9 +90,9 @@ TEST_CASE("straight paths drift where streamlines bunch, by as much as exact col
   constexpr int seeds = 5;
   std::vector<double> x, vertical, control_x, control_vertical, forecast_x, forecast_vertical;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    const PerturbedRing ring = ring_of(1e-2, seed);
-    const DriftRow straight = perturbed_ring_drift(ring, straight_path).back();
-    const DriftRow control = perturbed_ring_drift(ring, control_path).back();
+    const study::PerturbedRing ring = ring_of(1e-2, seed);
+    const study::DriftRow straight = perturbed_ring_drift(ring, study::straight_path).back();
+    const study::DriftRow control = perturbed_ring_drift(ring, study::control_path).back();
     StraightForecast exact(ring.count);
     perturbed_ring_drift(ring, "certified", &exact);
     x.push_back(straight.mean_guiding_x_r);
@@ -122,22 +122,22 @@ TEST_CASE("straight paths drift where streamlines bunch, by as much as exact col
 }
 
 TEST_CASE("the drift grows as the square of the step, and turns with the pattern") {
-  const double coarse = perturbed_ring_drift(ring_of(1e-2), straight_path).back().mean_guiding_x_r;
-  const double fine = perturbed_ring_drift(ring_of(2.5e-3), straight_path).back().mean_guiding_x_r;
+  const double coarse = perturbed_ring_drift(ring_of(1e-2), study::straight_path).back().mean_guiding_x_r;
+  const double fine = perturbed_ring_drift(ring_of(2.5e-3), study::straight_path).back().mean_guiding_x_r;
   MESSAGE("X at steps of 1e-2 and 2.5e-3 orbit: " << coarse << ", " << fine << " r");
   CHECK(std::log2(coarse / fine) / 2.0 == doctest::Approx(2.0).epsilon(0.1)); // runs scatter by 10 %
-  PerturbedRing mirrored = ring_of(1e-2);
+  study::PerturbedRing mirrored = ring_of(1e-2);
   mirrored.waves = -mirrored.waves;
-  const double back = perturbed_ring_drift(mirrored, straight_path).back().mean_guiding_x_r;
+  const double back = perturbed_ring_drift(mirrored, study::straight_path).back().mean_guiding_x_r;
   CHECK(back == doctest::Approx(-coarse).epsilon(0.3)); // three times that scatter
 }
 
 TEST_CASE("no finder lets the mean guiding centre or the mean inclination drift beyond rounding") {
-  for (const FinderEntry& finder : finder_table()) {
+  for (const finders::FinderEntry& finder : finders::finder_table()) {
     CAPTURE(finder.name);
-    PerturbedRing ring = ring_of(1e-2);
+    study::PerturbedRing ring = ring_of(1e-2);
     ring.count = 400;
-    const DriftRow row = perturbed_ring_drift(ring, finder.name).back();
+    const study::DriftRow row = perturbed_ring_drift(ring, finder.name).back();
     CHECK(row.collisions_per_particle > 30.0);
     // each collision rounds X in half a box of 32 m, and each step the inclination, by at most 7e-15 m
     const double rounding = 7.1e-15 * (row.collisions_per_particle + orbits / 1e-2);
@@ -147,11 +147,11 @@ TEST_CASE("no finder lets the mean guiding centre or the mean inclination drift 
 }
 
 TEST_CASE("rows come evenly in time, and the CSV has a line for each") {
-  PerturbedRing ring = ring_of(1e-2);
+  study::PerturbedRing ring = ring_of(1e-2);
   ring.count = 100;
   ring.orbits = 0.2;
   ring.samples = 2;
-  const std::vector<DriftRow> rows = perturbed_ring_drift(ring, straight_path);
+  const std::vector<study::DriftRow> rows = perturbed_ring_drift(ring, study::straight_path);
   REQUIRE(rows.size() == 2);
   CHECK(rows[0].orbits == doctest::Approx(0.1));
   CHECK(rows[1].orbits == doctest::Approx(0.2));

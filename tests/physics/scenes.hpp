@@ -61,8 +61,9 @@ inline Means settle_and_average(Simulation& simulation, const Scene& scene, doub
     if (k % every != 0)
       continue;
     const Patch patch = simulation.patch();
-    means.dispersion += velocity_dispersion(patch) * static_cast<double>(every) / static_cast<double>(total);
-    means.height += scale_height(patch) * static_cast<double>(every) / static_cast<double>(total);
+    means.dispersion +=
+        diagnostics::velocity_dispersion(patch) * static_cast<double>(every) / static_cast<double>(total);
+    means.height += diagnostics::scale_height(patch) * static_cast<double>(every) / static_cast<double>(total);
   }
   const CollisionTally& after = simulation.state().collisions;
   const double count = static_cast<double>(simulation.state().particles.size());

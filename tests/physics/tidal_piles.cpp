@@ -80,7 +80,7 @@ Pile after_an_orbit_and_a_half(double hill_parameter) {
   const double before = run_until(1.0), lost = run_until(1.5) - before;
   const Patch patch = simulation.patch();
   const double rate = patch.orbital_frequency;
-  return {analyze_clusters(std::span(&patch, 1), 0.2).largest_mass_fraction, internal_speed(patch),
+  return {diagnostics::analyze_clusters(std::span(&patch, 1), 0.2).largest_mass_fraction, internal_speed(patch),
           2.0 * rate * rate * lost / binding_energy(patch), simulation.state().resting.pairs.size()};
 }
 

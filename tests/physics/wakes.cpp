@@ -30,7 +30,7 @@ std::vector<Patch> third_orbit(int seed) {
 // What does not need an average over seeds. Wakes are inclined by more near their centre than beyond (Michikoshi et al.
 // 2015: inner pitch 15–30°, outer 10–15°). Random motion within them is slower than the streams. A star shines through
 // along their crests: at B = 3.45° at most 8 % of its light near 129,000 km (Hedman et al. 2007, VIMS).
-void check_structure(const std::vector<Patch>& patches, const Analysis& a) {
+void check_structure(const std::vector<Patch>& patches, const diagnostics::Analysis& a) {
   REQUIRE(a.wakes.wavelength.value.has_value());
   const double across = *a.wakes.wavelength.value / a.critical_wavelength_m;
   MESSAGE("lambda " << across << " across, " << *a.wakes.radial_wavelength.value / a.critical_wavelength_m
@@ -46,15 +46,15 @@ void check_structure(const std::vector<Patch>& patches, const Analysis& a) {
   CHECK(a.local.toomre_q < 0.6 * a.toomre_q);
   CHECK(a.local.thin_area_fraction > 0.1);
 
-  const RayLattice rays(patches[0].box, 200000, 10.0);
-  std::vector<Occultation> looks;
+  const diagnostics::RayLattice rays(patches[0].box, 200000, 10.0);
+  std::vector<diagnostics::Occultation> looks;
   for (int azimuth = 0; azimuth < 180; azimuth += 10)
     looks.push_back(occultation(patches, rays, {3.45 * pi / 180.0, azimuth * pi / 180.0}));
   const auto asymmetry = azimuthal_asymmetry(looks);
   REQUIRE(asymmetry.has_value());
   const double brightest = asymmetry->brightest_azimuth * 180.0 / pi;
   double most = 0.0;
-  for (const Occultation& look : looks)
+  for (const diagnostics::Occultation& look : looks)
     most = std::max(most, *look.transmission.value);
   MESSAGE("at B 3.45 degrees " << most << " passes at most, at azimuth " << brightest);
   CHECK(std::fabs(brightest - 90.0 - *a.wake_pitch_degrees) < 20.0);
@@ -69,7 +69,7 @@ TEST_CASE("wakes of the A-ring example have the pitch and the spacing of the lit
   double spacing = 0.0; // mean over the seeds, λ_cr
   for (int seed = 1; seed <= seeds; ++seed) {
     const std::vector<Patch> patches = third_orbit(seed);
-    const Analysis a = analyze(patches);
+    const diagnostics::Analysis a = diagnostics::analyze(patches);
     REQUIRE(a.wake_pitch_degrees.has_value());
     REQUIRE(a.wake_spacing_m.has_value());
     const double own_spacing = *a.wake_spacing_m / a.critical_wavelength_m;
@@ -77,7 +77,7 @@ TEST_CASE("wakes of the A-ring example have the pitch and the spacing of the lit
                     << " lambda_cr, Q " << a.toomre_q);
     CHECK(*a.wake_pitch_degrees > 15.0);
     CHECK(*a.wake_pitch_degrees < 30.0);
-    CHECK(largest_overlap(patches.back()).depth < 1e-9);
+    CHECK(cells::largest_overlap(patches.back()).depth < 1e-9);
     spacing += own_spacing / seeds;
     check_structure(patches, a);
   }

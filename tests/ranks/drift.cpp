@@ -23,7 +23,7 @@ namespace {
 // A rank's part of a ring.
 class Part {
 public:
-  Part(const Ring& ring, const CollisionSettings& settings, const Slabs::Reach& reach)
+  Part(const Ring& ring, const collision::CollisionSettings& settings, const decomposition::Slabs::Reach& reach)
       : own(ring.particles), slabs(keeler_test::launched(), ring.box, ring.frequencies, reach),
         drift(settings, ring.frequencies, test::omega, ring.step), step_(ring.step) {
     if (!keeler_test::launched().is_root())
@@ -46,8 +46,8 @@ public:
   }
 
   Particles own;
-  Slabs slabs;
-  DriftPhase drift;
+  decomposition::Slabs slabs;
+  collision::DriftPhase drift;
 
 private:
   double step_;
@@ -71,14 +71,14 @@ Particles part_of(const Particles& whole, const Particles& own) {
 
 struct Walk {
   std::size_t contacts = 0;
-  DriftCosts costs;
+  collision::DriftCosts costs;
   std::uint64_t rebuilds = 0; // of the ghost layer
 };
 
 // Makes `steps` steps of a scenario's patch, which all ranks generate.
-Walk walk(const Scenario& s, std::uint64_t seed, int steps, const Slabs::Reach& reach = {}) {
+Walk walk(const Scenario& s, std::uint64_t seed, int steps, const decomposition::Slabs::Reach& reach = {}) {
   const Communicator& ranks = keeler_test::launched();
-  const CollisionSettings settings = test::settings_of(s);
+  const collision::CollisionSettings settings = test::settings_of(s);
   Ring ring(test::make_patch(s, seed), settings, s.step);
   Part part(ring, settings, reach);
   test::PlainDrift plain(settings, ring.frequencies, test::omega, ring.step);
@@ -151,10 +151,10 @@ TEST_CASE(
     s.smallest = 1.0 / 30, s.count = 200;
   }
   SUBCASE("no rebound") {
-    s.restitution = constant_restitution(0.0), s.filling = 0.3;
+    s.restitution = collision::constant_restitution(0.0), s.filling = 0.3;
   }
   SUBCASE("elastic") {
-    s.restitution = constant_restitution(1.0);
+    s.restitution = collision::constant_restitution(1.0);
   }
   SUBCASE("rough spheres") {
     s.friction = {.tangential_restitution = 0.5};

@@ -122,7 +122,7 @@ TEST_CASE("ranks may be more than particles") {
 }
 
 TEST_CASE("small spheres caught between large ones are moved to the positions of one process") {
-  UniformRequest request;
+  initial_conditions::UniformRequest request;
   std::vector<double> radii;
   for (int k = 0; k <= 40; ++k) // from 1 to 10⁻⁴, with growing numbers
     radii.insert(radii.end(), static_cast<std::size_t>(std::pow(10.0, 0.09 * k)), std::pow(10.0, -0.1 * k));
@@ -135,7 +135,7 @@ TEST_CASE("small spheres caught between large ones are moved to the positions of
   request.dispersion_z = 4.0 / 3.0 * pi * sum(3) / area / (std::sqrt(two_pi) * 0.2);
   request.dispersion_x = request.dispersion_z / 0.65;
   request.seed = 5;
-  UniformRequest own = request;
+  initial_conditions::UniformRequest own = request;
   request.radii = radii;
   const std::size_t count = radii.size(), ranks = launched().size();
   own.first = count * launched().rank() / ranks;

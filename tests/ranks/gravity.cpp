@@ -25,7 +25,7 @@ struct Sample {
   std::vector<double> masses;
   std::vector<std::uint64_t> ids;
 
-  GravityProblem problem(double offset) const { return {positions, masses, ids, box, offset, 2.7e-3, {}}; }
+  gravity::GravityProblem problem(double offset) const { return {positions, masses, ids, box, offset, 2.7e-3, {}}; }
 };
 
 // Makes particles with a power law of masses over three decades; position(random) is in units of the box along x and y,
@@ -112,7 +112,7 @@ Part own_part(const Sample& whole, Distribution distribution) {
   return own;
 }
 
-std::vector<Vec3> solve(FftSolver& solver, GravityProblem problem, const Communicator& ranks) {
+std::vector<Vec3> solve(gravity::FftSolver& solver, gravity::GravityProblem problem, const Communicator& ranks) {
   std::vector<Vec3> accelerations(problem.positions.size(), Vec3::Constant(1e300));
   problem.ranks = ranks;
   solver.accelerate(problem, accelerations);
@@ -134,10 +134,10 @@ TEST_CASE("accelerations of fft and mesh on many ranks have the bits of one proc
     for (const double cut : {2.5, 7.0}) {
       if (!short_range && cut > 3.0)
         continue;
-      const FftSettings settings{1.4, cut, short_range};
-      FftSolver distributed(settings, choose_instruction_set()); // reuses its memory for all states
+      const gravity::FftSettings settings{1.4, cut, short_range};
+      gravity::FftSolver distributed(settings, choose_instruction_set()); // reuses its memory for all states
       for (const Sample& whole : samples()) {
-        FftSolver alone(settings, choose_instruction_set());
+        gravity::FftSolver alone(settings, choose_instruction_set());
         for (const double fraction : {0.0, 0.37, 0.499999, 0.83}) {
           const double offset = fraction * whole.box.size_y;
           const std::vector<Vec3> expected = solve(alone, whole.problem(offset), {});
@@ -158,21 +158,21 @@ TEST_CASE("accelerations of fft and mesh on many ranks have the bits of one proc
 
 TEST_CASE("energy and stress on many ranks have the bits of one process, on each of them") {
   for (const bool short_range : {true, false}) {
-    const FftSettings settings{1.4, 2.5, short_range};
-    FftSolver distributed(settings, choose_instruction_set());
+    const gravity::FftSettings settings{1.4, 2.5, short_range};
+    gravity::FftSolver distributed(settings, choose_instruction_set());
     for (const Sample& whole : samples()) {
-      FftSolver alone(settings, choose_instruction_set());
+      gravity::FftSolver alone(settings, choose_instruction_set());
       for (const double fraction : {0.0, 0.37, 0.83}) {
-        const GravityEnergy expected = alone.energy(whole.problem(fraction * whole.box.size_y));
+        const gravity::GravityEnergy expected = alone.energy(whole.problem(fraction * whole.box.size_y));
         for (const Distribution distribution :
              {Distribution::by_id, Distribution::by_position, Distribution::to_last}) {
           CAPTURE(whole.name);
           CAPTURE(short_range);
           CAPTURE(fraction);
           const Part own = own_part(whole, distribution);
-          GravityProblem problem = own.state.problem(fraction * whole.box.size_y);
+          gravity::GravityProblem problem = own.state.problem(fraction * whole.box.size_y);
           problem.ranks = launched();
-          const GravityEnergy found = distributed.energy(problem);
+          const gravity::GravityEnergy found = distributed.energy(problem);
           CHECK(found.potential == expected.potential);
           CHECK(found.stress == expected.stress);
         }
@@ -184,7 +184,7 @@ TEST_CASE("energy and stress on many ranks have the bits of one process, on each
 TEST_CASE("a position that is not finite on one rank is an error on all") {
   const Sample whole = samples().back();
   Part own = own_part(whole, Distribution::to_last);
-  FftSolver solver({1.4, 2.5, true}, choose_instruction_set());
+  gravity::FftSolver solver({1.4, 2.5, true}, choose_instruction_set());
   for (const double nowhere : {std::numeric_limits<double>::quiet_NaN(), 1e30}) {
     if (std::isfinite(nowhere) && !launched().distributed())
       continue; // one process treats it as a position at the edge
@@ -196,6 +196,6 @@ TEST_CASE("a position that is not finite on one rank is an error on all") {
 
 TEST_CASE("no particles at all are no error") {
   const Sample none{"none", {40.0, 30.0, 1.5, 0.0}, {}, {}, {}};
-  FftSolver solver({1.4, 2.5, true}, choose_instruction_set());
+  gravity::FftSolver solver({1.4, 2.5, true}, choose_instruction_set());
   CHECK(solve(solver, none.problem(0.0), launched()).empty());
 }

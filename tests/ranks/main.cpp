@@ -45,6 +45,6 @@ int main(int argc, char** argv) {
   if (!ranks.is_root())
     context.setOption("minimal", true); // prints failures only
   const bool failed = ranks.any(context.run() != 0 || leaks());
-  finish_ranks();
+  comm::finish_ranks();
   return failed ? 1 : 0;
 }

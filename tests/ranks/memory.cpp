@@ -52,24 +52,24 @@ TEST_CASE("a run and its snapshots, checkpoints, hash and resumption keep partic
   ranks.broadcast(path);
 
   const double before = peak_memory();
-  RunOptions options;
+  runs::RunOptions options;
   options.folder = path;
   options.ranks = ranks;
-  RunRequests requests;
-  const RunResult run = start_run(many_particles(), options, requests);
+  runs::RunRequests requests;
+  const runs::RunResult run = start_run(many_particles(), options, requests);
   options.until_orbits = 8e-3;
-  const RunResult resumed = resume_run(options, requests);
+  const runs::RunResult resumed = resume_run(options, requests);
   CHECK(run.finished);
   CHECK(resumed.step == 4);
 
   const double own = static_cast<double>(count) / static_cast<double>(ranks.size());
-  CHECK(static_cast<double>(exchange_costs().max_bytes) < 1.05 * piece);
+  CHECK(static_cast<double>(comm::exchange_costs().max_bytes) < 1.05 * piece);
   const double memory = (peak_memory() - before) / own;
-  MESSAGE("rank " << ranks.rank() << ": " << 1e-6 * static_cast<double>(exchange_costs().max_bytes) << " MB at once, "
-                  << memory << " bytes of memory per own particle");
+  MESSAGE("rank " << ranks.rank() << ": " << 1e-6 * static_cast<double>(comm::exchange_costs().max_bytes)
+                  << " MB at once, " << memory << " bytes of memory per own particle");
   CHECK(memory < max_memory + (ranks.is_root() ? 2.0 * piece / own : 0.0)); // the root writes the pieces
   // gathering the bodies alone exceeds a piece: the counter shows it
   const std::vector<std::byte> bodies(64 * static_cast<std::size_t>(own));
   ranks.gather(bodies);
-  CHECK((!ranks.is_root() || static_cast<double>(exchange_costs().max_bytes) > 2.0 * piece));
+  CHECK((!ranks.is_root() || static_cast<double>(comm::exchange_costs().max_bytes) > 2.0 * piece));
 }

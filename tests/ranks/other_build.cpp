@@ -20,9 +20,9 @@ int main() {
   try {
     keeler::Communicator::launched();
   } catch (const keeler::Error& error) {
-    keeler::fail_ranks(error.code());
+    keeler::comm::fail_ranks(error.code());
     return static_cast<int>(error.code());
   }
-  keeler::finish_ranks();
+  keeler::comm::finish_ranks();
   return 0;
 }

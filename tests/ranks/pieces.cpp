@@ -66,7 +66,7 @@ Particles part_of(const Particles& all, std::size_t rank) {
 Particles sorted(const Particles& all) {
   Particles in_order;
   in_order.rough = all.rough;
-  for (const std::uint32_t k : order_by_id(all.ids))
+  for (const std::uint32_t k : particles::order_by_id(all.ids))
     append(in_order, all, k);
   return in_order;
 }
@@ -143,8 +143,8 @@ TEST_CASE("rows of a field come in the order of the ranks, in pieces of limited 
   }
   FieldTable table;
   own.list_fields(table);
-  for (const std::size_t max_bytes : {std::size_t{1}, std::size_t{5000}, FieldRows::max_piece}) {
-    const FieldRows rows(table.fields()[0], launched(), max_bytes);
+  for (const std::size_t max_bytes : {std::size_t{1}, std::size_t{5000}, io::FieldRows::max_piece}) {
+    const io::FieldRows rows(table.fields()[0], launched(), max_bytes);
     CHECK(rows.count() == all.size());
     std::vector<std::byte> found;
     rows.visit([&](std::size_t first, std::size_t count, std::span<const std::byte> bytes) {
@@ -161,7 +161,7 @@ TEST_CASE("rows of a field come in the order of the ranks, in pieces of limited 
 
 TEST_CASE("a checkpoint that ranks write is that of one process, byte by byte, and each reads a part of it") {
   const SharedFolder folder;
-  const CheckpointHeader header{"title = \"pieces\"\n", {{"version", "0"}}};
+  const io::CheckpointHeader header{"title = \"pieces\"\n", {{"version", "0"}}};
   const Particles all = all_particles(1999, Ids::later, true);
   Particles own = part_of(all, launched().rank()), whole;
   whole.rough = true;
@@ -180,12 +180,12 @@ TEST_CASE("a checkpoint that ranks write is that of one process, byte by byte, a
   write_checkpoint(folder / "distributed.h5", table_of(own), header, launched());
   launched().on_root([&] {
     write_checkpoint(folder / "alone.h5", table_of(whole), header);
-    CHECK(read_file(folder / "distributed.h5") == read_file(folder / "alone.h5"));
+    CHECK(files::read_file(folder / "distributed.h5") == files::read_file(folder / "alone.h5"));
   });
   Particles read;
   read.rough = true;
   number = 0.0;
-  const Checkpoint checkpoint(folder / "distributed.h5", launched());
+  const io::Checkpoint checkpoint(folder / "distributed.h5", launched());
   CHECK(checkpoint.header().scene == header.scene);
   checkpoint.read(table_of(read));
   CHECK(number == 0.1);
@@ -200,23 +200,23 @@ TEST_CASE("a checkpoint that ranks write is that of one process, byte by byte, a
 
 TEST_CASE("a snapshot whose particles come from all ranks is that of one process, byte by byte") {
   const SharedFolder folder;
-  const SnapshotMeta meta{"title = \"pieces\"\n", {{"version", "0"}}};
-  const Particles all = all_particles(2 * SnapshotFile::piece + 17, Ids::later, true);
+  const io::SnapshotMeta meta{"title = \"pieces\"\n", {{"version", "0"}}};
+  const Particles all = all_particles(2 * io::SnapshotFile::piece + 17, Ids::later, true);
   const auto patch_of = [](const Particles& particles) {
     Patch patch = make_patch(particles, {200.0, 200.0, 1.5, 0.0}, 12.0, Frequencies{}, 0.3);
     patch.orbital_frequency = 1.3e-4;
     return patch;
   };
-  std::optional<SnapshotFile> distributed;
+  std::optional<io::SnapshotFile> distributed;
   launched().on_root([&] {
     write_snapshot(folder / "alone.hdf", patch_of(all), meta);
     distributed.emplace(folder / "distributed.hdf", patch_of(Particles()), all.size(), true, meta);
   });
-  visit_by_id(part_of(all, launched().rank()), launched(), SnapshotFile::piece,
+  visit_by_id(part_of(all, launched().rank()), launched(), io::SnapshotFile::piece,
               [&](const Particles& piece) { distributed->add(patch_of(piece)); });
   launched().on_root([&] {
     distributed->finish();
-    CHECK(read_file(folder / "distributed.hdf") == read_file(folder / "alone.hdf"));
+    CHECK(files::read_file(folder / "distributed.hdf") == files::read_file(folder / "alone.hdf"));
   });
 }
 
@@ -225,13 +225,13 @@ TEST_CASE("a damaged checkpoint is an error on all ranks") {
   Particles own = part_of(all_particles(100, Ids::dense, false), launched().rank());
   FieldTable table;
   own.list_fields(table);
-  write_checkpoint(folder / "a.h5", table, {}, launched());
+  io::write_checkpoint(folder / "a.h5", table, {}, launched());
   launched().on_root([&] {
-    std::string bytes = read_text(folder / "a.h5");
+    std::string bytes = files::read_text(folder / "a.h5");
     bytes[bytes.size() / 2] ^= 1;
-    write_text(folder / "a.h5", bytes);
+    files::write_text(folder / "a.h5", bytes);
   });
-  CHECK_THROWS_AS(Checkpoint(folder / "a.h5", launched()), Error);
+  CHECK_THROWS_AS(io::Checkpoint(folder / "a.h5", launched()), Error);
 }
 
 TEST_CASE("particles on one rank, or distributed at random, are sent to their owners") {
@@ -245,7 +245,7 @@ TEST_CASE("particles on one rank, or distributed at random, are sent to their ow
     for (const Body& body : own.bodies)
       rows.push_back({body.elements.guiding_x, body.mass, 0.0});
     ShearingBox box{200.0, 200.0, 1.5, 0.0};
-    Slabs slabs(launched(), box, Frequencies{});
+    decomposition::Slabs slabs(launched(), box, Frequencies{});
     slabs.distribute({own, {&rows, &none}});
     CHECK(static_cast<double>(own.size()) < 1.1 * static_cast<double>(all.size() / launched().size()));
     CHECK(rows.size() == own.size());

@@ -25,7 +25,7 @@ using keeler_test::launched;
 
 namespace {
 
-Scene scene(const std::vector<std::string>& overrides = {}) {
+Scene a_scene(const std::vector<std::string>& overrides = {}) {
   return parse_scene(R"(
 [planet]
 preset = "saturn-a-ring"
@@ -50,7 +50,7 @@ public:
       folder_ = std::make_unique<test::TemporaryFolder>();
     path_ = folder_ ? (*folder_ / "start.hdf").string() : "";
     launched().broadcast(path_);
-    launched().on_root([&] { write_snapshot(path_, patch, {scene().resolved, {}}); });
+    launched().on_root([&] { io::write_snapshot(path_, patch, {a_scene().resolved, {}}); });
   }
   ~SharedSnapshot() { launched().any(false); } // removes the folder after all ranks arrived
   SharedSnapshot(const SharedSnapshot&) = delete;
@@ -102,20 +102,20 @@ template<class Work> std::string words_of(const Work& work) {
 std::string hash_after(Simulation& simulation, const Scene& its, int steps) {
   for (int k = 0; k < steps; ++k)
     simulation.advance();
-  return state_hash(simulation.state(), its, simulation.ranks());
+  return runs::state_hash(simulation.state(), its, simulation.ranks());
 }
 
 } // namespace
 
 TEST_CASE("a snapshot is read in consecutive parts, and without a seal by the root") {
   for (const bool rough : {false, true}) {
-    const Patch patch = initial_patch(rough ? scene({"collisions.friction.tangential_restitution=0.5"}) : scene());
+    const Patch patch = initial_patch(rough ? a_scene({"collisions.friction.tangential_restitution=0.5"}) : a_scene());
     const SharedSnapshot file(patch);
-    const Patch whole = read_snapshot(file.path()).patch;
+    const Patch whole = io::read_snapshot(file.path()).patch;
     for (const bool sealed : {true, false}) {
       if (!sealed)
         file.drop_seal();
-      const Patch part = read_snapshot(file.path(), launched()).patch;
+      const Patch part = io::read_snapshot(file.path(), launched()).patch;
       CHECK((!sealed || part.size() <= whole.size() / launched().size() + 1));
       CHECK((sealed || part.size() == (launched().is_root() ? whole.size() : 0)));
       const auto positions = of_all(part.positions), velocities = of_all(part.velocities), spins = of_all(part.spins);
@@ -134,16 +134,16 @@ TEST_CASE("a snapshot is read in consecutive parts, and without a seal by the ro
 }
 
 TEST_CASE("ids that do not increase from one part to the next are an error on all ranks") {
-  Patch patch = initial_patch(scene());
+  Patch patch = initial_patch(a_scene());
   const std::size_t border = patch.size() / launched().size();
   patch.ids[border] = patch.ids[border - 1];
   const SharedSnapshot file(patch);
-  CHECK(words_of([&] { read_snapshot(file.path(), launched()); }).find("ParticleIDs do not increase") !=
+  CHECK(words_of([&] { io::read_snapshot(file.path(), launched()); }).find("ParticleIDs do not increase") !=
         std::string::npos);
 }
 
 TEST_CASE("a run from a snapshot has the bits of one process, for any distribution of the particles read") {
-  const SharedSnapshot file(initial_patch(scene()));
+  const SharedSnapshot file(initial_patch(a_scene()));
   for (const char* keep : {"1.0", "0.6"})
     for (const bool rough : {false, true}) {
       std::vector<std::string> overrides{std::string("start.keep=") + keep};
@@ -159,21 +159,22 @@ TEST_CASE("a run from a snapshot has the bits of one process, for any distributi
       CHECK(hash_after(odd, from, 20) == expected);
       CHECK(distributed.state().energy.epicyclic == alone.state().energy.epicyclic);
       CHECK(distributed.state().energy.spin == alone.state().energy.spin);
-      CHECK(scale_of(initial_patch(from, {}, launched()), launched()).particle_count == alone.count());
+      CHECK(initial_conditions::scale_of(initial_patch(from, {}, launched()), launched()).particle_count ==
+            alone.count());
     }
 }
 
 TEST_CASE("particles of two ranks that overlap are named as one process names them") {
-  Patch patch = initial_patch(scene());
+  Patch patch = initial_patch(a_scene());
   patch.positions[7] = patch.positions[320]; // of two parts, whatever the number of ranks
   patch.positions[401] = patch.positions[122] + Vec3(0.3, 0.0, 0.0);
-  const std::string expected = words_of([&] { Simulation(scene(), patch); });
+  const std::string expected = words_of([&] { Simulation(a_scene(), patch); });
   CHECK(expected.find("overlap by") != std::string::npos);
-  CHECK(words_of([&] { Simulation(scene(), part_of(patch), launched()); }) == expected);
+  CHECK(words_of([&] { Simulation(a_scene(), part_of(patch), launched()); }) == expected);
 }
 
 TEST_CASE("an impossible state is an error on all ranks, in the words of one process") {
-  const Patch patch = initial_patch(scene());
+  const Patch patch = initial_patch(a_scene());
   const auto words = [](const Patch& start) {
     const SharedSnapshot file(start);
     const Scene from = parse_scene("[planet]\npreset = \"saturn-a-ring\"\n[start]\nfrom = \"" + file.path() +
@@ -196,13 +197,15 @@ TEST_CASE("a stop requested on one rank during a start ends all ranks with one m
   const test::TemporaryFolder own;
   std::string folder = (own / "run").string();
   launched().broadcast(folder); // all ranks get one request
-  RunOptions options;
+  runs::RunOptions options;
   options.folder = folder;
   options.ranks = launched();
-  RunRequests requests;
+  runs::RunRequests requests;
   int calls = 0;
-  options.start_progress = [&](const StartProgress&) { requests.stop = ++calls == 3 && launched().is_root(); };
-  const std::string words = words_of([&] { start_run(scene(), options, requests); });
+  options.start_progress = [&](const initial_conditions::StartProgress&) {
+    requests.stop = ++calls == 3 && launched().is_root();
+  };
+  const std::string words = words_of([&] { start_run(a_scene(), options, requests); });
   CHECK(words.find("stopped before the first step (on request)") == 0);
   CHECK(calls == 3);
   CHECK_FALSE(std::filesystem::exists(options.folder));

@@ -123,8 +123,8 @@ int measure_all(const Options& options, const std::vector<Subject>& subjects, co
     return 2;
   }
   if (!options.page.empty()) {
-    const std::string before = std::filesystem::exists(options.page) ? read_text(options.page) : "";
-    write_text(options.page, written(page, subjects, sections, before));
+    const std::string before = std::filesystem::exists(options.page) ? files::read_text(options.page) : "";
+    files::write_text(options.page, written(page, subjects, sections, before));
   }
   if (counts[Verdict::differs] > 0)
     fmt::print("{} differ for a known reason\n", counts[Verdict::differs]);

@@ -11,7 +11,7 @@ namespace {
 constexpr const char* energy_law = "conservation of energy";
 
 Row balance_row(const std::string& what, const Ran& ran, double since) {
-  const Transport t = transport_since(ran, since);
+  const runs::Transport t = transport_since(ran, since);
   return {.what = what,
           .measured = t.balance->value,
           .error = t.balance->error,

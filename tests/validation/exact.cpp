@@ -39,7 +39,7 @@ void add_sphere(Patch& patch, const Vec3& place, double radius) {
 }
 
 double transmission_of(const Patch& patch, double elevation, double azimuth) {
-  const RayLattice rays(patch.box, 4'000'000, patch.box.size_x);
+  const diagnostics::RayLattice rays(patch.box, 4'000'000, patch.box.size_x);
   const std::vector<std::uint8_t> blocked = rays.blocked(patch, {elevation * pi / 180.0, azimuth});
   const auto stopped = static_cast<double>(std::count(blocked.begin(), blocked.end(), 1));
   return 1.0 - stopped / static_cast<double>(blocked.size());
@@ -92,7 +92,7 @@ std::vector<Row> cylinders() {
 
 // Φ of all pairs and images of a patch that is sheared by a small strain, each pair by Ewald's sum.
 double exact_potential(const Patch& patch, double strain) {
-  const Lattice lattice(patch.box, patch.offset + strain * patch.box.size_x, 1e-9);
+  const gravity::Lattice lattice(patch.box, patch.offset + strain * patch.box.size_x, 1e-9);
   const auto place = [&](std::size_t k) {
     const Vec3& p = patch.positions[k];
     return Vec3(p.x(), p.y() - strain * p.x(), p.z());
@@ -116,8 +116,10 @@ std::vector<Row> gravitational_stress() {
   for (const double m : patch.masses)
     mass += m;
   const double unit = mass * patch.box.shear / patch.orbital_frequency; // to a viscosity in m²/s
-  const auto meter = make_energy_meter({.solver = GravitySettings::Solver::fft}, patch.masses, patch.box.area());
-  const GravityEnergy measured = meter->energy({patch.positions, patch.masses, patch.ids, patch.box, patch.offset, g});
+  const auto meter =
+      gravity::make_energy_meter({.solver = GravitySettings::Solver::fft}, patch.masses, patch.box.area());
+  const gravity::GravityEnergy measured =
+      meter->energy({patch.positions, patch.masses, patch.ids, patch.box, patch.offset, g});
   return {{.what = "gravitational viscosity of wakes, m^2/s",
            .measured = measured.stress / unit,
            .expected = exact / unit,

@@ -56,9 +56,10 @@ std::vector<Row> equilibria() {
                                                 fmt::format("particles.velocity_dispersion={}", k.c_x),
                                                 fmt::format("time.end={}", 3.0 * settled), "time.step=5e-3",
                                                 "output.series_every=0.1"});
-    const Transport t = transport_since(ran, settled);
+    const runs::Transport t = transport_since(ran, settled);
     const Patch& patch = ran.snapshots.back();
-    const double speed = mean_radius(patch) * patch.orbital_frequency, viscosity = speed * mean_radius(patch);
+    const double speed = diagnostics::mean_radius(patch) * patch.orbital_frequency,
+                 viscosity = speed * diagnostics::mean_radius(patch);
     const auto add = [&](const char* what, double measured, double expected, double part) {
       rows.push_back(
           {.what = fmt::format("{}, tau {}, {}", what, k.depth, k.restitution[9] == 'c' ? "eps 0.5" : "Bridges"),
@@ -71,7 +72,7 @@ std::vector<Row> equilibria() {
     };
     add("c_x / r Omega", mean_since(ran, "dispersion_x_m_s", settled) / speed, k.c_x, k.part);
     add("c_z / r Omega", mean_since(ran, "dispersion_z_m_s", settled) / speed, k.c_z, k.part);
-    add("H / r", mean_since(ran, "scale_height_m", settled) / mean_radius(patch), k.height, k.part);
+    add("H / r", mean_since(ran, "scale_height_m", settled) / diagnostics::mean_radius(patch), k.height, k.part);
     add("nu_trans / r^2 Omega", t.translational.value / viscosity, k.translational, 0.1);
     add("nu_coll / r^2 Omega", t.collisional.value / viscosity, k.collisional, 0.1);
   }
@@ -146,8 +147,8 @@ void add_pitches(std::vector<Row>& rows, const Ran& ran, double hill, int seed, 
   for (const Patch& patch : ran.snapshots)
     if (patch.time_orbits > 5.0 - 1e-9)
       settled.push_back(patch);
-  const WakeGeometry wakes = analyze(settled).wakes;
-  const auto add = [&](const char* part, const Measured& pitch, double expected, double tolerance,
+  const diagnostics::WakeGeometry wakes = diagnostics::analyze(settled).wakes;
+  const auto add = [&](const char* part, const statistics::Measured& pitch, double expected, double tolerance,
                        const char* difference) {
     rows.push_back({.what = fmt::format("{} pitch of wakes, degrees, r_h {}, seed {}", part, hill, seed),
                     .measured = pitch.value.value_or(NAN),
@@ -182,9 +183,9 @@ std::vector<Row> viscosity_of_wakes() {
   for (const double hill : {0.8, 0.9, 1.0})
     for (const int seed : {1, 2}) {
       const Ran ran = run_example("a-ring-wakes", wakes(hill, seed, 11.0));
-      const Transport t = transport_since(ran, 5.0);
+      const runs::Transport t = transport_since(ran, 5.0);
       const Patch& patch = ran.snapshots.back();
-      const double g_sigma = newton_g_si * surface_density(patch);
+      const double g_sigma = newton_g_si * diagnostics::surface_density(patch);
       const double unit = g_sigma * g_sigma / std::pow(patch.orbital_frequency, 3.0);
       const double expected = 26.0 * std::pow(hill, 5.0), error = t.total->error / unit;
       rows.push_back({.what = fmt::format("nu / (G^2 Sigma^2/Omega^3), r_h {}, seed {}", hill, seed),
@@ -223,7 +224,7 @@ std::vector<Row> transmission_of_wakes() {
   for (int azimuth = 0; azimuth < 180; azimuth += 10) {
     double sum = 0.0;
     for (const Patch& patch : settled) {
-      const RayLattice rays(patch.box, 200'000, patch.box.size_x);
+      const diagnostics::RayLattice rays(patch.box, 200'000, patch.box.size_x);
       const std::vector<std::uint8_t> blocked = rays.blocked(patch, {3.45 * pi / 180.0, azimuth * pi / 180.0});
       sum += static_cast<double>(std::count(blocked.begin(), blocked.end(), 0)) / static_cast<double>(blocked.size());
     }

@@ -18,7 +18,7 @@ constexpr double settled = 3.0; // orbits; the layer relaxes within one
 struct Wave {
   std::string command;
   std::vector<Patch> patches; ///< since the layer has settled
-  Growth growth;              ///< in Ω
+  diagnostics::Growth growth; ///< in Ω
 };
 
 // One wave in the box, as long as it.
@@ -34,7 +34,7 @@ Wave seeded_wave(double amplitude, double length, double width, double depth, do
   for (const Patch& patch : ran.snapshots)
     if (patch.time_orbits > settled - 1e-9)
       wave.patches.push_back(patch);
-  wave.growth = *analyze_radial_modes(wave.patches, 1)[0].growth;
+  wave.growth = *diagnostics::analyze_radial_modes(wave.patches, 1)[0].growth;
   return wave;
 }
 
@@ -111,7 +111,8 @@ std::vector<Row> overstability_or_wakes() {
     const Wave wave = with_gravity(hill, 24.0);
     rows.push_back(
         growth_row(fmt::format("100 m, tau 1, eps 0.1, r_h {}", hill), wave, 0.01, 0.01, "the sign", overstable));
-    const Measured angle = wake_geometry(wave.patches, critical_wavelength(wave.patches.back())).angle_degrees;
+    const statistics::Measured angle =
+        diagnostics::wake_geometry(wave.patches, diagnostics::critical_wavelength(wave.patches.back())).angle_degrees;
     rows.push_back({.what = fmt::format("angle of structure to the orbit in degrees, tau 1, eps 0.1, r_h {}", hill),
                     .measured = angle.value.value_or(0.0),
                     .expected = 0.0,
@@ -121,7 +122,8 @@ std::vector<Row> overstability_or_wakes() {
                     .command = "of the same run"});
   }
   const Wave inclined = with_gravity(0.7, 9.0);
-  const WakeGeometry geometry = wake_geometry(inclined.patches, critical_wavelength(inclined.patches.back()));
+  const diagnostics::WakeGeometry geometry =
+      diagnostics::wake_geometry(inclined.patches, diagnostics::critical_wavelength(inclined.patches.back()));
   rows.push_back({.what = "pitch of the structure in degrees, tau 1, eps 0.1, r_h 0.7",
                   .measured = geometry.mean.pitch_degrees.value_or(0.0),
                   .expected = 22.5,
@@ -134,7 +136,9 @@ std::vector<Row> overstability_or_wakes() {
 
 // Where wakes and waves compete, friction takes the part of the waves.
 std::vector<Row> friction() {
-  const auto amplitude = [](const Wave& wave) { return analyze_radial_modes(wave.patches, 1)[0].density_amplitude; };
+  const auto amplitude = [](const Wave& wave) {
+    return diagnostics::analyze_radial_modes(wave.patches, 1)[0].density_amplitude;
+  };
   const Wave smooth = with_gravity(0.65, 20.0),
              rough = with_gravity(0.65, 20.0, {"collisions.friction.tangential_restitution=0.5"});
   return {{.what = "amplitude of the axisymmetric wave, rough particles over smooth ones, tau 1, eps 0.1, r_h 0.65",

@@ -30,7 +30,8 @@ std::vector<Row> spins() {
 }
 
 double largest_share(const Ran& ran) {
-  return analyze_clusters(std::span(&ran.snapshots.back(), 1), default_cluster_gap).largest_mass_fraction;
+  return diagnostics::analyze_clusters(std::span(&ran.snapshots.back(), 1), diagnostics::default_cluster_gap)
+      .largest_mass_fraction;
 }
 
 Row share_row(std::string what, const Ran& ran, double low, double high, const char* source) {
@@ -78,7 +79,7 @@ Row rest_of_pile(const std::string& law) {
 
 std::vector<Row> contacts_at_rest() {
   const Ran ring = run_example("hard-spheres/ring.toml", {});
-  const Transport t = transport_since(ring, 1.5);
+  const runs::Transport t = transport_since(ring, 1.5);
   std::vector<Row> rows{{.what = "loss over work of the shear, optical depth 1, r_h 1.1",
                          .measured = t.balance->value,
                          .error = t.balance->error,
@@ -88,7 +89,7 @@ std::vector<Row> contacts_at_rest() {
                          .source = "energy is conserved in a steady state",
                          .command = ring.command},
                         {.what = "largest overlap in it, of a radius sum",
-                         .measured = largest_overlap(ring.snapshots.back()).depth,
+                         .measured = cells::largest_overlap(ring.snapshots.back()).depth,
                          .expected = 0.0,
                          .tolerance = 1e-11,
                          .tolerance_is = "rounding",

@@ -47,8 +47,8 @@ std::vector<Subject> moonlet_subjects();
 /// A run of a scene of examples/, by its folder or its file, with some keys set, in a folder that is gone afterwards.
 struct Ran {
   std::string command; ///< that does the same
-  SeriesTable series;
-  SeriesTable moonlets; ///< empty in a scene that has none
+  io::SeriesTable series;
+  io::SeriesTable moonlets; ///< empty in a scene that has none
   std::vector<Patch> snapshots;
 };
 Ran run_example(const std::string& example, const std::vector<std::string>& overrides);
@@ -60,6 +60,6 @@ std::vector<std::string> wakes(double hill, int seed, double orbits);
 double mean_since(const Ran& ran, const char* column, double orbit);
 
 /// Viscosities and balance from an orbit on.
-Transport transport_since(const Ran& ran, double orbit);
+runs::Transport transport_since(const Ran& ran, double orbit);
 
 } // namespace keeler::validation

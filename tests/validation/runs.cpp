@@ -13,18 +13,18 @@ namespace keeler::validation {
 Ran run_example(const std::string& example, const std::vector<std::string>& overrides) {
   const test::TemporaryFolder work;
   const std::string file = fmt::format("examples/{}{}", example, example.ends_with(".toml") ? "" : "/scene.toml");
-  RunRequests requests;
-  RunOptions options;
+  runs::RunRequests requests;
+  runs::RunOptions options;
   options.folder = work / "run";
   start_run(load_scene(std::string(KEELER_SOURCE_DIR) + "/" + file, overrides), options, requests);
   Ran ran;
   ran.command = fmt::format("keeler run {}", file);
   for (const std::string& key : overrides)
     ran.command += fmt::format(" --set '{}'", key);
-  ran.series = read_series(work / "run" / "series.csv");
+  ran.series = io::read_series(work / "run" / "series.csv");
   if (std::filesystem::exists(work / "run" / "moonlets.csv"))
-    ran.moonlets = read_series(work / "run" / "moonlets.csv");
-  ran.snapshots = load_patches(work / "run", 1e9).patches;
+    ran.moonlets = io::read_series(work / "run" / "moonlets.csv");
+  ran.snapshots = runs::load_patches(work / "run", 1e9).patches;
   return ran;
 }
 
@@ -39,8 +39,8 @@ double mean_since(const Ran& ran, const char* column, double orbit) {
   return sum / count;
 }
 
-Transport transport_since(const Ran& ran, double orbit) {
-  return transport(ran.series, RingScale::of(ran.snapshots.back(), false), {.since = orbit, .until = {}});
+runs::Transport transport_since(const Ran& ran, double orbit) {
+  return transport(ran.series, runs::RingScale::of(ran.snapshots.back(), false), {.since = orbit, .until = {}});
 }
 
 } // namespace keeler::validation

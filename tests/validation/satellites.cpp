@@ -39,7 +39,7 @@ Narrowed passed(const std::vector<std::string>& overrides) {
       fmt::format("{}, and {} times more --from DIR/snap_000001.hdf of the run before", ran.command, passages - 1);
   const double start = width(ran.snapshots.front());
   for (int k = 1; k < passages; ++k) {
-    write_snapshot(state, ran.snapshots.back(), {});
+    io::write_snapshot(state, ran.snapshots.back(), {});
     std::vector<std::string> next = overrides;
     next.push_back(fmt::format("start.from=\"{}\"", state));
     ran = run_example(example, next);

@@ -15,16 +15,25 @@
 #include <span>
 
 namespace keeler {
-
-class DriftEngine;
 class FieldTable;
+} // namespace keeler
+
+namespace keeler::finders {
 class Finder;
-struct DriftCosts;
 struct DriftStep;
 struct FinderResult;
-struct GhostLayer;
-struct NeighbourAudit;
 struct Query;
+} // namespace keeler::finders
+
+namespace keeler::decomposition {
+struct GhostLayer;
+} // namespace keeler::decomposition
+
+namespace keeler::collision {
+
+class DriftEngine;
+struct DriftCosts;
+struct NeighbourAudit;
 
 /// Counts and sums over collisions; each step's sums are exact and rounded once. Energies in kg m² rad⁻².
 struct CollisionTally {
@@ -69,16 +78,16 @@ public:
   /// Returns the number of domains for contacts on several threads, wherever that is allowed; 0: as many as pay.
   virtual std::size_t wants_domains() const { return 0; }
   /// Returns a finder in place of the settings' one, or nullptr. Constant within a step.
-  virtual Finder* replacement_finder() { return nullptr; }
+  virtual finders::Finder* replacement_finder() { return nullptr; }
   /// True: begins() to changed() are called, one at a time, in an order that no number of threads changes.
   virtual bool wants_events() const { return true; }
   /// True: recorded() is called. Steps keep their threads.
   virtual bool wants_records() const { return false; }
 
-  virtual void begins(const DriftStep&) {}                    ///< before the first search of a step
-  virtual void searched(const Query&, const FinderResult&) {} ///< a search, and what it has found
-  virtual void collided(const CollisionRecord&) {}            ///< a contact that has been carried out
-  virtual void changed(std::size_t /*particle*/) {}           ///< the velocity of a particle has changed
+  virtual void begins(const finders::DriftStep&) {}                             ///< before the first search of a step
+  virtual void searched(const finders::Query&, const finders::FinderResult&) {} ///< a search, and what it has found
+  virtual void collided(const CollisionRecord&) {}                              ///< a contact that has been carried out
+  virtual void changed(std::size_t /*particle*/) {} ///< the velocity of a particle has changed
   /// Receives all contacts of a step at its end, in the order of events.
   virtual void recorded(std::span<const CollisionRecord>) {}
 };
@@ -121,11 +130,11 @@ public:
   /// of their owners. The own particles become what they would on one rank, and each contact counts on all ranks.
   /// Returns false on all, with everything as it was, if an own particle of one went farther than the margin.
   /// Preconditions: all ranks call it; the finder is exact; no observer wants events, and there is no audit.
-  bool collide_distributed(Particles& particles, const GhostLayer& ghosts, const Communicator& ranks,
+  bool collide_distributed(Particles& particles, const decomposition::GhostLayer& ghosts, const Communicator& ranks,
                            const ShearingBox& box, double offset, CollisionTally& tally);
 
-  const Finder& finder() const; ///< the one in use, which may be the observer's
-  DriftCosts costs() const;     ///< since construction
+  const finders::Finder& finder() const; ///< the one in use, which may be the observer's
+  DriftCosts costs() const;              ///< since construction
 
   /// Releases memory that the next steps would need again: before a large allocation.
   void release();
@@ -144,4 +153,8 @@ private:
   std::unique_ptr<DriftEngine> engine_;
 };
 
+} // namespace keeler::collision
+
+namespace keeler {
+using collision::CollisionTally;
 } // namespace keeler

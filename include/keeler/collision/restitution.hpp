@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 /// Two particles about to collide.
 struct Impact {
@@ -59,4 +59,8 @@ struct RestitutionEntry {
 /// Returns all laws. A new law is one more entry.
 const std::vector<RestitutionEntry>& restitution_laws();
 
+} // namespace keeler::collision
+
+namespace keeler {
+using collision::Impact, collision::RestitutionLaw;
 } // namespace keeler

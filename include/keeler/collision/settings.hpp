@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace keeler {
+namespace keeler::collision {
 
 /// Friction between rough spheres (friction.hpp has its law).
 struct Friction {
@@ -39,4 +39,4 @@ struct Rebound {
 Rebound rebound(const CollisionSettings& settings, double approach_speed, double radius_low, double radius_high,
                 double orbital_frequency);
 
-} // namespace keeler
+} // namespace keeler::collision

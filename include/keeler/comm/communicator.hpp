@@ -19,8 +19,10 @@
 #include <vector>
 
 namespace keeler {
-
 class ExactSum;
+} // namespace keeler
+
+namespace keeler::comm {
 
 /// One byte buffer per rank, to send to it or received from it.
 using Parcels = std::vector<std::vector<std::byte>>;
@@ -178,4 +180,8 @@ std::vector<std::vector<Row>> Communicator::exchange(const std::vector<std::vect
   return received;
 }
 
+} // namespace keeler::comm
+
+namespace keeler {
+using comm::Communicator;
 } // namespace keeler

@@ -9,8 +9,10 @@
 #include <vector>
 
 namespace keeler {
-
 class FieldTable;
+} // namespace keeler
+
+namespace keeler::contact_solver {
 
 /// Two particles by id, the lower one first.
 struct RestingPair {
@@ -44,4 +46,4 @@ struct RestingState {
   void list_fields(FieldTable& table); ///< adds everything that an exact restart needs
 };
 
-} // namespace keeler
+} // namespace keeler::contact_solver

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// Self-gravity wakes in the autocorrelation (wakes.hpp).
 struct Wakes {
@@ -28,13 +28,13 @@ struct Wakes {
 
 /// Sizes and directions of wakes in several snapshots (wake_geometry.hpp).
 struct WakeGeometry {
-  Wakes mean;                   ///< of the mean autocorrelation
-  double contrast = 0.0;        ///< rms of the smoothed Σ/⟨Σ⟩ − 1
-  Measured wavelength;          ///< λ_⊥, m
-  Measured radial_wavelength;   ///< λ_x, m
-  Measured angle_degrees;       ///< of the spectrum
-  Measured inner_pitch_degrees; ///< of the ridge
-  Measured outer_pitch_degrees; ///< of the ridge
+  Wakes mean;                               ///< of the mean autocorrelation
+  double contrast = 0.0;                    ///< rms of the smoothed Σ/⟨Σ⟩ − 1
+  statistics::Measured wavelength;          ///< λ_⊥, m
+  statistics::Measured radial_wavelength;   ///< λ_x, m
+  statistics::Measured angle_degrees;       ///< of the spectrum
+  statistics::Measured inner_pitch_degrees; ///< of the ridge
+  statistics::Measured outer_pitch_degrees; ///< of the ridge
 };
 
 /// Principal axes of the peculiar velocities (velocity_ellipsoid.hpp).
@@ -146,4 +146,4 @@ struct AnalysisSettings {
 /// different boxes.
 Analysis analyze(std::span<const Patch> patches, const AnalysisSettings& settings = {});
 
-} // namespace keeler
+} // namespace keeler::diagnostics

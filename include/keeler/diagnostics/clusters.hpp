@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 inline constexpr double default_cluster_gap = 0.01; ///< gap between surfaces / sum of the radii
 
@@ -54,4 +54,4 @@ struct ClusterAnalysis {
 /// Returns means over the patches. Precondition: at least one patch, none of them empty.
 ClusterAnalysis analyze_clusters(std::span<const Patch> patches, double gap = default_cluster_gap);
 
-} // namespace keeler
+} // namespace keeler::diagnostics

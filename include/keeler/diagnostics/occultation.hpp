@@ -7,7 +7,7 @@
 
 #include <span>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// Moments of the transmission of footprints about their mean, without photon noise.
 struct FlickerMoments {
@@ -22,7 +22,7 @@ FlickerMoments flicker_moments(std::span<const double> transmissions);
 /// What one line of sight shows.
 struct Occultation {
   LineOfSight sight;                                ///< its angles
-  Measured transmission;                            ///< mean T of the snapshots, and the scatter of single ones
+  statistics::Measured transmission;                ///< mean T of the snapshots, and the scatter of single ones
   double ray_error = 0.0;                           ///< standard error of the mean T, by the finite number of rays
   std::optional<double> normal_optical_depth;       ///< τ_n = −sin B ln T; empty if no light passes
   std::optional<double> normal_optical_depth_error; ///< from ray_error
@@ -42,4 +42,4 @@ struct AzimuthalAsymmetry {
 /// Returns the asymmetry of occultations at one elevation; nothing for fewer than two or if no light passes.
 std::optional<AzimuthalAsymmetry> azimuthal_asymmetry(std::span<const Occultation> of_one_elevation);
 
-} // namespace keeler
+} // namespace keeler::diagnostics

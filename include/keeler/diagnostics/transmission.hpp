@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-namespace keeler {
+namespace keeler::diagnostics {
 
 /// Angles in rad, 0 < elevation ≤ π/2.
 struct LineOfSight {
@@ -67,4 +67,4 @@ struct RayMean {
 /// holds only one.
 RayMean ray_mean(const std::vector<std::uint8_t>& blocked);
 
-} // namespace keeler
+} // namespace keeler::diagnostics

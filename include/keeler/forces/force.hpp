@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::forces {
 
 /// The particles at the boundary between two steps, as a force sees them.
 struct Boundary {
@@ -53,7 +53,7 @@ public:
 
   /// Returns the energy and the stress of the particles in their own field, or nothing if the force cannot measure
   /// them. Collective; does not affect later steps.
-  virtual std::optional<GravityEnergy> energy(const Boundary&) { return std::nullopt; }
+  virtual std::optional<gravity::GravityEnergy> energy(const Boundary&) { return std::nullopt; }
 };
 
 /// The data from which a force may be made when a run starts or continues. Valid only while the force is made. A force
@@ -88,4 +88,4 @@ void add_force(ForceEntry entry);
 /// selected, measured and tuned by them. From the first call on, none can be added.
 const std::vector<ForceEntry>& external_forces();
 
-} // namespace keeler
+} // namespace keeler::forces

@@ -13,7 +13,7 @@
 #include <span>
 #include <string>
 
-namespace keeler {
+namespace keeler::gravity {
 
 /// Particles at one instant, in any memory order and at any position relative to the cell. Over several ranks each has
 /// its own particles, and solving is collective. The three spans have equal lengths.
@@ -95,4 +95,8 @@ bool has_energy_meter(const GravitySettings& settings);
 std::unique_ptr<EnergyMeter> make_energy_meter(const GravitySettings& settings, std::span<const double> masses,
                                                double area, const Communicator& ranks = {});
 
+} // namespace keeler::gravity
+
+namespace keeler {
+using gravity::GravitySettings;
 } // namespace keeler

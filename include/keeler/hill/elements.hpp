@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace keeler {
+namespace keeler::hill {
 
 /// Epicyclic and vertical frequency in units of the orbital frequency.
 struct Frequencies {
@@ -147,4 +147,8 @@ private:
   FixedRotation e_, i_;
 };
 
+} // namespace keeler::hill
+
+namespace keeler {
+using hill::Frequencies, hill::Elements, hill::Rotation, hill::State;
 } // namespace keeler

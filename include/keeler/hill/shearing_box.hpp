@@ -11,7 +11,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace keeler {
+namespace keeler::hill {
 
 /// An image of a particle: the shift in boxes, outward and along the orbit.
 struct Image {
@@ -61,4 +61,8 @@ private:
   Image far_image_into_cell(double x, double y, double offset) const;
 };
 
+} // namespace keeler::hill
+
+namespace keeler {
+using hill::Image, hill::ShearingBox;
 } // namespace keeler

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::initial_conditions {
 
 /// Bounds on the means of a quantity in two successive windows, relative to the mean over both.
 struct MeanBounds {
@@ -107,4 +107,4 @@ ClumpedState clumped_state(const Scene& scene, const SettleCriterion& criterion 
 /// Returns the record as numbers by name, for SnapshotMeta::clumping.
 std::map<std::string, std::vector<double>> clumping_numbers(const Clumping& clumping);
 
-} // namespace keeler
+} // namespace keeler::initial_conditions

@@ -8,9 +8,11 @@
 #include <functional>
 #include <string>
 
-namespace keeler {
-
+namespace keeler::scene {
 struct PatchScale;
+} // namespace keeler::scene
+
+namespace keeler::initial_conditions {
 
 /// Progress of making a start.
 struct StartProgress {
@@ -36,6 +38,10 @@ Patch patch_from_snapshot(const std::string& path, const Scene& scene);
 Patch patch_from_snapshot(Patch patch, const std::string& path, const Scene& scene, const Communicator& ranks = {});
 
 /// Returns the size of a patch, for warnings. Collective, for a part of the particles: on the root.
-PatchScale scale_of(const Patch& patch, const Communicator& ranks = {});
+scene::PatchScale scale_of(const Patch& patch, const Communicator& ranks = {});
 
+} // namespace keeler::initial_conditions
+
+namespace keeler {
+using initial_conditions::initial_patch;
 } // namespace keeler

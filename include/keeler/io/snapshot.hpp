@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::io {
 
 /// Program, machine and command line of a file, never part of a hash: name → value: version, commit, compiler, flags,
 /// libraries, host, threads, arguments, started (UTC).
@@ -71,4 +71,4 @@ Snapshot read_snapshot(const std::filesystem::path& file, const Communicator& ra
 /// file.
 std::string snapshot_seal(const std::filesystem::path& file);
 
-} // namespace keeler
+} // namespace keeler::io

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace keeler {
+namespace keeler::particles {
 
 /// All arrays have one entry per particle, in increasing order of id.
 struct Patch {
@@ -39,4 +39,8 @@ Patch make_patch(const Particles& particles, const ShearingBox& box, double offs
 /// Inverse of make_patch(): returns particles with elements at an epoch `ahead` (rad) after the instant of the patch.
 Particles particles_from(const Patch& patch, double ahead);
 
+} // namespace keeler::particles
+
+namespace keeler {
+using particles::Patch;
 } // namespace keeler

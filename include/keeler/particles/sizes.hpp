@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-namespace keeler {
+namespace keeler::particles {
 
 /// A size distribution, radii in m. Its functions are called from several threads at once.
 struct SizeLaw {
@@ -80,4 +80,4 @@ void add_size_law(SizeEntry entry);
 /// Returns all size laws. From the first call on, none can be added.
 const std::vector<SizeEntry>& size_laws();
 
-} // namespace keeler
+} // namespace keeler::particles

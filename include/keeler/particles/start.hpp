@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::particles {
 
 /// The particles to be placed. Lengths in m, masses in kg, times in rad (one orbit is 2π). Valid only during the call.
 struct StartRequest {
@@ -41,4 +41,4 @@ void add_start(StartEntry entry);
 /// Returns all starts that were added. From the first call on, none can be added.
 const std::vector<StartEntry>& start_laws();
 
-} // namespace keeler
+} // namespace keeler::particles

@@ -9,8 +9,10 @@
 #include <vector>
 
 namespace keeler {
-
 class FieldTable;
+} // namespace keeler
+
+namespace keeler::particles {
 
 /// Elements (m) at the common epoch, radius (m) and mass (kg), aligned to one cache line.
 struct alignas(64) Body {
@@ -31,7 +33,7 @@ struct SpinTurn {
   double sine = 0.0;   ///< of the time
 
   SpinTurn() = default;
-  explicit SpinTurn(double time) { sine_cosine(time, sine, cosine); } ///< since the epoch, rad
+  explicit SpinTurn(double time) { hill::sine_cosine(time, sine, cosine); } ///< since the epoch, rad
 
   /// Transforms components at the epoch to components at `time` after it.
   Vec3 from_epoch(const Vec3& v) const { return {cosine * v.x() + sine * v.y(), cosine * v.y() - sine * v.x(), v.z()}; }
@@ -56,4 +58,8 @@ struct Particles {
   void list_fields(FieldTable& table);
 };
 
+} // namespace keeler::particles
+
+namespace keeler {
+using particles::Body, particles::Particles;
 } // namespace keeler

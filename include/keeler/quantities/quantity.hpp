@@ -15,7 +15,7 @@
 #include <variant>
 #include <vector>
 
-namespace keeler {
+namespace keeler::quantities {
 
 /// A unit: the suffix of names, and the text for display. A pure number has neither.
 struct Unit {
@@ -139,7 +139,7 @@ struct Record {
 /// Returns a value; a number that is not finite is unknown.
 Value value_of(const std::optional<double>& number, const std::string& why_not = {});
 /// As above, with the scatter.
-Value value_of(const Measured& number, const std::string& why_not = {});
+Value value_of(const statistics::Measured& number, const std::string& why_not = {});
 /// As above, with the standard error if it is finite.
 Value value_of(const std::optional<Estimate>& number);
 
@@ -194,4 +194,4 @@ Record only(const Record& record, std::span<const std::string> names);
 /// Returns the first quantity that matches the name; null if there is none.
 const Quantity* find_quantity(std::span<const Quantity> quantities, const std::string& name);
 
-} // namespace keeler
+} // namespace keeler::quantities

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string>
 
-namespace keeler {
+namespace keeler::runs {
 
 /// A column of series.csv, after Keeler's. All texts are literals in UTF-8.
 struct OwnColumn {
@@ -43,4 +43,4 @@ void add_quantity(const OwnQuantity& quantity);
 /// `keeler analyze PATH --json` prints. Throws IoError; UsageError if there is nothing to measure.
 std::string analyze_json(const std::filesystem::path& path);
 
-} // namespace keeler
+} // namespace keeler::runs

@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::runs {
 
 /// Requests set by a signal handler or another thread. They take effect at the end of a step, `give_up` at once.
 struct RunRequests {
@@ -51,19 +51,19 @@ struct RunOptions {
   std::optional<double> until_orbits; ///< end of the run instead of the scene's
   std::optional<double> wall_time_s;  ///< stop with a checkpoint before this much wall time has passed
   std::vector<std::string> arguments; ///< the command line, for provenance
-  std::function<void(const StartProgress&)> start_progress; ///< called while the start is made
-  std::function<void(const RunProgress&)> progress;         ///< called after each step
+  std::function<void(const initial_conditions::StartProgress&)> start_progress; ///< called while the start is made
+  std::function<void(const RunProgress&)> progress;                             ///< called after each step
   Communicator ranks = {}; ///< processes of the run: all call with equal options, the root writes the folder
   std::function<void(const std::string&)> notice; ///< receives lines for the user: rounding, skipped checkpoints
 };
 
 /// How a run ended.
 struct RunResult {
-  bool finished = false;      ///< false: stopped on request; a checkpoint is on disk
-  std::int64_t step = 0;      ///< ticks done
-  std::string state_hash;     ///< 32 hexadecimal digits; states of equal hashes are bitwise equal
-  std::string resume_command; ///< the command that continues the run, for messages
-  Record summary{};           ///< the content of summary.json
+  bool finished = false;        ///< false: stopped on request; a checkpoint is on disk
+  std::int64_t step = 0;        ///< ticks done
+  std::string state_hash;       ///< 32 hexadecimal digits; states of equal hashes are bitwise equal
+  std::string resume_command;   ///< the command that continues the run, for messages
+  quantities::Record summary{}; ///< the content of summary.json
 };
 
 /// Starts a run. Throws UsageError if the folder already holds a run and `force` is false; IoError; InvariantError,
@@ -78,8 +78,8 @@ RunResult resume_run(const RunOptions& options, RunRequests& requests);
 
 /// The state of a checkpoint, and its scene.
 struct StoredRun {
-  Scene scene;           ///< as stored with it
-  SimulationState state; ///< from which the run continues
+  Scene scene;                       ///< as stored with it
+  simulation::SimulationState state; ///< from which the run continues
 };
 /// Reads a checkpoint. Throws IoError.
 StoredRun load_checkpoint(const std::filesystem::path& file);
@@ -91,6 +91,6 @@ StoredRun load_newest_checkpoint(const std::filesystem::path& folder,
 
 /// Writes a state as the checkpoint of a run without output so far: named checkpoint_000000.h5 in an otherwise empty
 /// folder, `keeler resume` continues from it. Precondition: the state is between two kick intervals. Throws IoError.
-void store_checkpoint(const std::filesystem::path& file, const SimulationState& state, const Scene& scene);
+void store_checkpoint(const std::filesystem::path& file, const simulation::SimulationState& state, const Scene& scene);
 
-} // namespace keeler
+} // namespace keeler::runs

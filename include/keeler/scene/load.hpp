@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::scene {
 
 /// Reads and checks a scene file. Overrides are "a.b=value" with TOML values (bare words are strings). `from` replaces
 /// start.from; messages call it --from. Throws UsageError "file:line:column: problem; what to do" for the first fault.
@@ -25,4 +25,8 @@ Scene parse_stored_scene(const std::string& text, const std::string& name);
 /// As parse_stored_scene(), for the scene.toml of a run. Throws IoError if it cannot be read or is not a valid scene.
 Scene load_stored_scene(const std::filesystem::path& file);
 
+} // namespace keeler::scene
+
+namespace keeler {
+using scene::load_scene, scene::parse_scene;
 } // namespace keeler

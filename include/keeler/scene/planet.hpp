@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace keeler {
+namespace keeler::scene {
 
 /// The orbit around the planet, by its frequencies.
 struct PlanetSettings {
@@ -28,4 +28,4 @@ double distance_from_saturn(const PlanetSettings& planet);
 /// (Daisaka, Tanaka & Ida 2001). Aggregates form above about 1.1.
 double hill_parameter(double density, double distance);
 
-} // namespace keeler
+} // namespace keeler::scene

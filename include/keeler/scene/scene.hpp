@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::scene {
 
 struct LayerSizes;
 
@@ -82,15 +82,15 @@ struct AggregateSettings {
 
 /// A start that the calling program has added.
 struct StartSettings {
-  const StartEntry* entry = nullptr; ///< its place among start_laws()
-  Parameters parameters;             ///< the values of its keys
+  const particles::StartEntry* entry = nullptr; ///< its place among start_laws()
+  Parameters parameters;                        ///< the values of its keys
 };
 
 /// The particles at the start, moonlets not included.
 struct ParticleSettings {
   std::size_t count = 0;                     ///< N, derived if the file gives τ or Σ
   double density = 0.0;                      ///< kg/m³; for populations the mean by volume
-  SizeLaw sizes;                             ///< distribution of radii
+  particles::SizeLaw sizes;                  ///< distribution of radii
   double velocity_dispersion = 2.0;          ///< c_x in ⟨r⟩ Ω
   std::uint64_t seed = 1;                    ///< of all random numbers
   StreamlineSettings streamlines;            ///< the mean motion
@@ -147,8 +147,8 @@ struct OutputSettings {
 
 /// An external force of the scene.
 struct ForceSettings {
-  const ForceEntry* entry = nullptr; ///< in external_forces()
-  Parameters parameters;             ///< values of its keys
+  const forces::ForceEntry* entry = nullptr; ///< in external_forces()
+  Parameters parameters;                     ///< values of its keys
 };
 
 /// What a run is made from. load_scene() and parse_scene() make one.
@@ -159,7 +159,7 @@ struct Scene {
   double size_y = 0.0;                        ///< size along the orbit, m; 0 likewise
   ParticleSettings particles;                 ///< at the start
   std::vector<MoonletSettings> moonlets;      ///< bodies among the particles
-  CollisionSettings collisions;               ///< finder, restitution, friction
+  collision::CollisionSettings collisions;    ///< finder, restitution, friction
   std::optional<GravitySettings> gravity;     ///< none: no gravity code runs
   std::vector<ForceSettings> external_forces; ///< in the order of external_forces()
   std::optional<std::string> start_from;      ///< path of a snapshot
@@ -193,4 +193,8 @@ struct Scene {
 /// Upper limit of the box's longest side over its shortest: gravity sums as many images one by one.
 inline constexpr double max_aspect_ratio = 1000.0;
 
+} // namespace keeler::scene
+
+namespace keeler {
+using scene::Scene;
 } // namespace keeler

@@ -18,14 +18,25 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
-
+namespace keeler::contact_solver {
 class RestingContacts;
-class Slabs;
-struct Overlap;
-struct ParticleMeans;
 struct RestingCosts;
+} // namespace keeler::contact_solver
+
+namespace keeler::decomposition {
+class Slabs;
 struct SlabHolding;
+} // namespace keeler::decomposition
+
+namespace keeler::cells {
+struct Overlap;
+} // namespace keeler::cells
+
+namespace keeler::diagnostics {
+struct ParticleMeans;
+} // namespace keeler::diagnostics
+
+namespace keeler::simulation {
 
 /// Wall time of each part since construction, s.
 struct TimeSplit {
@@ -106,13 +117,13 @@ public:
   double offset_at_break() const; ///< the box's shear offset at that time, m
 
   /// Returns the particles at this boundary as forces see them. Valid until the next step.
-  Boundary boundary() const;
+  forces::Boundary boundary() const;
 
   /// Returns the energy and the stress of self-gravity at this boundary, if it acts and has them. Collective.
-  std::optional<GravityEnergy> gravity_energy() const;
+  std::optional<gravity::GravityEnergy> gravity_energy() const;
 
   /// Returns means over all particles at this boundary. Collective.
-  ParticleMeans means() const;
+  diagnostics::ParticleMeans means() const;
 
   /// Returns the deepest overlap of two particles at this boundary in units of the sum of their radii; 0 if there is
   /// none. Collective. May change the order in memory; the next step rebuilds its lists.
@@ -121,12 +132,14 @@ public:
   /// Returns the balance of the energy of random motions. Collective.
   EnergyBalance balance() const;
   /// As above, with means that are known already.
-  EnergyBalance balance(const ParticleMeans& now) const { return state_.balance(now, scene_.planet.frequencies); }
+  EnergyBalance balance(const diagnostics::ParticleMeans& now) const {
+    return state_.balance(now, scene_.planet.frequencies);
+  }
 
   const TimeSplit& time_split() const { return split_; } ///< up to now
 
   /// Returns the cost of contacts at rest at the last kick.
-  const RestingCosts& resting_costs() const;
+  const contact_solver::RestingCosts& resting_costs() const;
 
   /// Returns the ticks from kick to kick of state().forces[f], for the current step.
   std::int64_t ticks_between_kicks(std::size_t f) const {
@@ -134,7 +147,7 @@ public:
   }
 
   /// For observers of collisions and measurements of finders.
-  DriftPhase& drift() { return drift_; }
+  collision::DriftPhase& drift() { return drift_; }
 
 private:
   static constexpr std::size_t elsewhere = ~std::size_t{0};
@@ -143,8 +156,8 @@ private:
   void divide();
   void require_ghost_layer();
   void collide_distributed();
-  Overlap largest_overlap_distributed();
-  SlabHolding holding();
+  cells::Overlap largest_overlap_distributed();
+  decomposition::SlabHolding holding();
 
   void collide();
   Patch patch_of(const Particles& particles) const;
@@ -173,15 +186,19 @@ private:
   Communicator ranks_;
   SimulationState state_;
   std::size_t count_;
-  DriftPhase drift_;
-  bool drifting_ = false;                      // a drift has begun and not ended
-  bool undisturbed_ = false;                   // particles have only moved since the last drift
-  std::vector<std::unique_ptr<Force>> forces_; // in the order of state_.forces
-  std::unique_ptr<RestingContacts> resting_;
-  std::unique_ptr<Slabs> slabs_;             // null unless distributed
-  std::vector<std::size_t> moonlet_indices_; // in the store; `elsewhere` on another rank
-  std::vector<double> moonlet_wraps_;        // shift in x and y of each by this wrap, m
+  collision::DriftPhase drift_;
+  bool drifting_ = false;                              // a drift has begun and not ended
+  bool undisturbed_ = false;                           // particles have only moved since the last drift
+  std::vector<std::unique_ptr<forces::Force>> forces_; // in the order of state_.forces
+  std::unique_ptr<contact_solver::RestingContacts> resting_;
+  std::unique_ptr<decomposition::Slabs> slabs_; // null unless distributed
+  std::vector<std::size_t> moonlet_indices_;    // in the store; `elsewhere` on another rank
+  std::vector<double> moonlet_wraps_;           // shift in x and y of each by this wrap, m
   TimeSplit split_;
 };
 
+} // namespace keeler::simulation
+
+namespace keeler {
+using simulation::Simulation;
 } // namespace keeler

@@ -12,9 +12,11 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
-
+namespace keeler::diagnostics {
 struct ParticleMeans;
+} // namespace keeler::diagnostics
+
+namespace keeler::simulation {
 
 /// Energies at the beginning of a run, kg m² rad⁻².
 struct EnergyStart {
@@ -79,17 +81,17 @@ struct StepControl {
 
 /// All that a run continues from. Elements refer to the middle of the next step, h/2 after the current tick.
 struct SimulationState {
-  Particles particles;                ///< of this rank
-  std::vector<ForceState> forces;     ///< self-gravity first, then the external forces of the scene
-  ShearingBox box;                    ///< its size and shear
-  std::int64_t step = 0;              ///< ticks done; equal to steps unless these are automatic
-  double step_length = 0.0;           ///< h of the next step, rad
-  StepControl control;                ///< lengths of the step and of the kick interval
-  CollisionTally collisions;          ///< since the run began
-  RestingState resting;               ///< contacts at rest
-  EnergyStart energy;                 ///< when the run began
-  std::vector<MoonletTrack> moonlets; ///< the moonlets have the last ids, in this order
-  bool carries = false;               ///< true if contacts at rest may carry kicks in this scene
+  Particles particles;                  ///< of this rank
+  std::vector<ForceState> forces;       ///< self-gravity first, then the external forces of the scene
+  ShearingBox box;                      ///< its size and shear
+  std::int64_t step = 0;                ///< ticks done; equal to steps unless these are automatic
+  double step_length = 0.0;             ///< h of the next step, rad
+  StepControl control;                  ///< lengths of the step and of the kick interval
+  CollisionTally collisions;            ///< since the run began
+  contact_solver::RestingState resting; ///< contacts at rest
+  EnergyStart energy;                   ///< when the run began
+  std::vector<MoonletTrack> moonlets;   ///< the moonlets have the last ids, in this order
+  bool carries = false;                 ///< true if contacts at rest may carry kicks in this scene
 
   SimulationState() = default;
   /// Makes an empty state with an entry for each force of the scene, ready to be read from a checkpoint.
@@ -117,7 +119,7 @@ struct SimulationState {
   double kick_work() const;
 
   /// Returns the balance since the run began. Precondition: `means` are those of the particles at this boundary.
-  EnergyBalance balance(const ParticleMeans& means, const Frequencies& frequencies) const;
+  EnergyBalance balance(const diagnostics::ParticleMeans& means, const Frequencies& frequencies) const;
 };
 
-} // namespace keeler
+} // namespace keeler::simulation

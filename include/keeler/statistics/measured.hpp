@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-namespace keeler {
+namespace keeler::statistics {
 
 /// A mean and its standard error.
 struct Estimate {
@@ -25,4 +25,8 @@ Measured measured(std::optional<double> value, std::span<const double> singles);
 /// within 90° of `value`.
 Measured measured_direction(std::optional<double> value, std::span<const double> singles);
 
+} // namespace keeler::statistics
+
+namespace keeler {
+using statistics::Estimate;
 } // namespace keeler

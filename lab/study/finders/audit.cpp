@@ -7,21 +7,21 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::study {
 namespace {
 
 constexpr double noticeable = 1e-6; // of the radius sum: two hundred times the published convergence, 1e-8 in d²
 
 // Returns the overlap of a query's two spheres at a time, in radius sums R; negative when they are apart.
-double depth(const Query& query, const DriftStep& step, double time) {
+double depth(const finders::Query& query, const finders::DriftStep& step, double time) {
   assert(query.low < step.bodies.size() && query.high < step.bodies.size());
-  const Pair pair = pair_of(query, step);
-  return 1.0 - RelativeMotion(pair, step).at(time).d.norm() / pair.radius_sum;
+  const finders::Pair pair = pair_of(query, step);
+  return 1.0 - finders::RelativeMotion(pair, step).at(time).d.norm() / pair.radius_sum;
 }
 
 // Returns the largest overlap between two times, so that a contact that the search stepped over counts although the
 // spheres have parted again. It samples 64 times: an overlap between two samples is a graze.
-double deepest(const Query& query, const DriftStep& step, double from, double to) {
+double deepest(const finders::Query& query, const finders::DriftStep& step, double from, double to) {
   assert(std::isfinite(from) && std::isfinite(to));
   constexpr int samples = 64;
   double depth_so_far = depth(query, step, to);
@@ -30,15 +30,15 @@ double deepest(const Query& query, const DriftStep& step, double from, double to
   return depth_so_far;
 }
 
-bool same(const Query& a, const Query& b) {
+bool same(const finders::Query& a, const finders::Query& b) {
   return a.low == b.low && a.high == b.high && a.shift_x == b.shift_x && a.shift_y == b.shift_y;
 }
 
 } // namespace
 
-FinderAudit::FinderAudit() : certified_(make_finder("certified")) {}
+FinderAudit::FinderAudit() : certified_(finders::make_finder("certified")) {}
 
-void FinderAudit::begins(const DriftStep& step) {
+void FinderAudit::begins(const finders::DriftStep& step) {
   count_misordered();
   step_ = &step;
   certified_->begin(step);
@@ -46,10 +46,10 @@ void FinderAudit::begins(const DriftStep& step) {
   true_.assign(step.bodies.size(), {});
 }
 
-void FinderAudit::searched(const Query& query, const FinderResult& result) {
+void FinderAudit::searched(const finders::Query& query, const finders::FinderResult& result) {
   assert(step_ && "begins() was called");
   verdict_.counts.add(result);
-  const FinderResult truth = certified_->find(query);
+  const finders::FinderResult truth = certified_->find(query);
   verdict_.true_hits += truth.contact();
   if (truth.contact() && !result.contact())
     ++verdict_.missed;
@@ -69,7 +69,7 @@ void FinderAudit::searched(const Query& query, const FinderResult& result) {
   }
 }
 
-void FinderAudit::note_first(std::vector<First>& firsts, const Query& query, double time) {
+void FinderAudit::note_first(std::vector<First>& firsts, const finders::Query& query, double time) {
   for (const std::uint32_t particle : {query.low, query.high})
     if (time < firsts[particle].time)
       firsts[particle] = {time, query};
@@ -87,4 +87,4 @@ FinderVerdict FinderAudit::verdict() {
   return verdict_;
 }
 
-} // namespace keeler
+} // namespace keeler::study

@@ -8,11 +8,11 @@
 #include <memory>
 #include <vector>
 
-namespace keeler {
+namespace keeler::study {
 
 /// Sums over the calls of a run. The certified finder's answer to a call counts as true.
 struct FinderVerdict {
-  FinderCounts counts;          ///< calls, iterations and evaluations of the audited finder
+  finders::FinderCounts counts; ///< calls, iterations and evaluations of the audited finder
   std::uint64_t true_hits = 0;  ///< calls with a contact
   std::uint64_t missed = 0;     ///< there is a contact, the finder reported none
   std::uint64_t false_hits = 0; ///< reported without a contact, or while the surfaces are more than 1e-6 R apart
@@ -22,19 +22,21 @@ struct FinderVerdict {
 
   std::uint64_t calls() const { return counts.total().count; }
   /// Calls that reported a contact.
-  std::uint64_t hits() const { return counts.of(FinderExit::hit).count + counts.of(FinderExit::overlapping).count; }
+  std::uint64_t hits() const {
+    return counts.of(finders::FinderExit::hit).count + counts.of(finders::FinderExit::overlapping).count;
+  }
 };
 
 /// Observes a drift and audits each of its finder's calls.
-class FinderAudit : public DriftObserver {
+class FinderAudit : public collision::DriftObserver {
 public:
   FinderAudit();
 
   bool wants_every_candidate() const override { return true; }
 
-  void begins(const DriftStep& step) override; ///< `step` must live until the next call or the last verdict()
+  void begins(const finders::DriftStep& step) override; ///< `step` must live until the next call or the last verdict()
   /// Precondition: begins() was called.
-  void searched(const Query& query, const FinderResult& result) override;
+  void searched(const finders::Query& query, const finders::FinderResult& result) override;
   void changed(std::size_t particle) override { certified_->changed(particle); }
 
   /// Returns the sums up to and including the last step.
@@ -43,15 +45,15 @@ public:
 private:
   struct First {
     double time = HUGE_VAL;
-    Query with;
+    finders::Query with;
   };
   void count_misordered();
-  void note_first(std::vector<First>& firsts, const Query& query, double time);
+  void note_first(std::vector<First>& firsts, const finders::Query& query, double time);
 
-  std::unique_ptr<Finder> certified_;
-  const DriftStep* step_ = nullptr;
+  std::unique_ptr<finders::Finder> certified_;
+  const finders::DriftStep* step_ = nullptr;
   FinderVerdict verdict_;
   std::vector<First> found_, true_; // per particle in this step, of the contacts that both finders found
 };
 
-} // namespace keeler
+} // namespace keeler::study

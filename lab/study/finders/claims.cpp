@@ -8,7 +8,7 @@
 #include <cmath>
 #include <map>
 
-namespace keeler {
+namespace keeler::study {
 namespace {
 
 constexpr double tie = 1.02; // ratio of times that six repeats do not resolve
@@ -206,4 +206,4 @@ Rows paper_claims(const FinderStudyData& n) {
   return rows;
 }
 
-} // namespace keeler
+} // namespace keeler::study

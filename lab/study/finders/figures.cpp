@@ -15,7 +15,7 @@
 #include <cassert>
 #include <functional>
 
-namespace keeler {
+namespace keeler::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -34,13 +34,13 @@ std::vector<const Json*> drift_results(const FinderStudyData& data) {
 }
 
 // Returns the curves of one column: all finders in grey with one entry in the legend, then the straight paths.
-std::vector<PlotCurve> drift_curves(const std::vector<const Json*>& results, const char* column) {
-  std::vector<PlotCurve> curves;
+std::vector<plot::PlotCurve> drift_curves(const std::vector<const Json*>& results, const char* column) {
+  std::vector<plot::PlotCurve> curves;
   std::size_t straight = 0;
   for (const Json* const result : results) {
     const auto path = result->at("path").get<std::string>();
     const auto step = result->at("step_orbits").get<double>();
-    PlotCurve curve;
+    plot::PlotCurve curve;
     if (!path.starts_with("straight"))
       curve = {.name = curves.empty() ? "every finder, step 0.01" : "", .colour = std::nullopt};
     else
@@ -60,8 +60,8 @@ void figure1(const FinderStudyData& data, const fs::path& folder) {
     for (const Json& row : result->at("rows"))
       rows.push_back({row.at("orbits"), result->at("path"), result->at("step_orbits"), row.at("mean_guiding_x_r"),
                       row.at("mean_vertical_r"), row.at("collisions_per_particle")});
-  write_text(folder / "figure1.csv", drift_csv(rows));
-  Figure figure{.columns = 2, .width = 1100};
+  files::write_text(folder / "figure1.csv", drift_csv(rows));
+  plot::Figure figure{.columns = 2, .width = 1100};
   for (const auto& [column, what] :
        {std::pair("mean_guiding_x_r", "guiding centre"), std::pair("mean_vertical_r", "vertical motion")})
     figure.panels.push_back({.x = {.label = "time (orbits)"},
@@ -73,29 +73,29 @@ void figure1(const FinderStudyData& data, const fs::path& folder) {
 // Draws the surface distance in a hit, a graze and a miss: relative epicycles with different closest distances.
 void figure2(const fs::path& folder) {
   constexpr double end_orbits = 0.06 / two_pi;
-  Panel panel{.x = {.label = "time (orbits)", .range = {-end_orbits, end_orbits}},
-              .y = {.label = "d − (r_{1} + r_{2}) (r)", .range = {-1.5, 6.0}},
-              .curves = {{.points = {{-end_orbits, 0.0}, {end_orbits, 0.0}}, .colour = std::nullopt}}};
+  plot::Panel panel{.x = {.label = "time (orbits)", .range = {-end_orbits, end_orbits}},
+                    .y = {.label = "d − (r_{1} + r_{2}) (r)", .range = {-1.5, 6.0}},
+                    .curves = {{.points = {{-end_orbits, 0.0}, {end_orbits, 0.0}}, .colour = std::nullopt}}};
   const Frequencies f{1.0, 1.0};
   for (const auto& [name, closest] : {std::pair("hit", 0.8), std::pair("graze", 1.97), std::pair("miss", 2.3)}) {
-    Pair pair;
+    finders::Pair pair;
     pair.hi = elements_from({{closest, 0.0, 0.0}, {0.0, -120.0, 0.0}}, f, Rotation(f, 0.0));
-    const DriftStep step(f, -0.1, 0.1, 10.0);
-    const RelativeMotion motion(pair, step);
-    PlotCurve curve{.name = name, .colour = panel.curves.size() - 1};
+    const finders::DriftStep step(f, -0.1, 0.1, 10.0);
+    const finders::RelativeMotion motion(pair, step);
+    plot::PlotCurve curve{.name = name, .colour = panel.curves.size() - 1};
     for (int k = -60; k <= 60; ++k)
       curve.points.push_back({k * 1e-3 / two_pi, motion.at(k * 1e-3).d.norm() - 2.0});
     panel.curves.push_back(curve);
   }
-  save_figures({.panels = {panel}}, folder, "figure2");
+  plot::save_figures({.panels = {panel}}, folder, "figure2");
 }
 
 // Returns one curve per finder through value(x, finder).
-std::vector<PlotCurve> curves_of_finders(const std::vector<double>& all_x,
-                                         const std::function<double(double, const std::string&)>& value) {
-  std::vector<PlotCurve> curves;
+std::vector<plot::PlotCurve> curves_of_finders(const std::vector<double>& all_x,
+                                               const std::function<double(double, const std::string&)>& value) {
+  std::vector<plot::PlotCurve> curves;
   for (const std::string& finder : shown_finders()) {
-    PlotCurve curve{.name = finder, .colour = curves.size(), .marks = true};
+    plot::PlotCurve curve{.name = finder, .colour = curves.size(), .marks = true};
     for (const double x : all_x)
       curve.points.push_back({x, value(x, finder)});
     curves.push_back(curve);
@@ -104,7 +104,7 @@ std::vector<PlotCurve> curves_of_finders(const std::vector<double>& all_x,
 }
 
 void figure4(const FinderStudyData& data, const fs::path& folder) {
-  Figure figure{.columns = 2, .width = 1100};
+  plot::Figure figure{.columns = 2, .width = 1100};
   for (const StudyState& state : data.states)
     figure.panels.push_back({.title = state.name,
                              .x = {.label = "step (orbits)", .log = true},
@@ -117,7 +117,7 @@ void figure4(const FinderStudyData& data, const fs::path& folder) {
 
 // Returns the numbers of calls by `field` (iterations or evaluations), as columns: all calls, calls with a contact.
 // Calls that end before the loop are left out, as in the paper. Bin `last` collects all larger values.
-std::vector<PlotCurve> histogram(const Json& audit, const char* field, std::size_t first, std::size_t last) {
+std::vector<plot::PlotCurve> histogram(const Json& audit, const char* field, std::size_t first, std::size_t last) {
   assert(first <= last);
   std::vector<std::uint64_t> contact(last + 1, 0), all(last + 1, 0);
   for (const auto& [exit, calls] : audit.at("exits").items()) {
@@ -131,8 +131,8 @@ std::vector<PlotCurve> histogram(const Json& audit, const char* field, std::size
       contact[std::min(k, last)] += hit ? count : 0;
     }
   }
-  std::vector<PlotCurve> columns = {{.name = "no contact", .colour = std::nullopt, .columns = true},
-                                    {.name = "contact found", .columns = true}};
+  std::vector<plot::PlotCurve> columns = {{.name = "no contact", .colour = std::nullopt, .columns = true},
+                                          {.name = "contact found", .columns = true}};
   for (std::size_t k = first; k <= last; ++k) {
     columns[0].points.push_back({static_cast<double>(k), static_cast<double>(all[k])});
     columns[1].points.push_back({static_cast<double>(k), static_cast<double>(contact[k])});
@@ -143,15 +143,15 @@ std::vector<PlotCurve> histogram(const Json& audit, const char* field, std::size
 void histograms(const FinderStudyData& data, const fs::path& folder, const std::string& name, const char* field,
                 const std::vector<std::string>& finders) {
   const std::string& state = data.states.front().name;
-  Figure figure{.width = 800, .panel_height = 160};
+  plot::Figure figure{.width = 800, .panel_height = 160};
   for (const std::string& finder : finders)
     figure.panels.push_back({.title = finder,
                              .x = {.label = field, .range = {0.0, 52.0}},
                              .y = {.label = "calls", .log = true},
                              .curves = histogram(data.audit(state, data.shown_step, finder), field, 1, 51)});
-  for (Panel& panel : figure.panels) {
+  for (plot::Panel& panel : figure.panels) {
     double most = 1.0;
-    for (const PlotPoint& point : panel.curves.front().points)
+    for (const plot::PlotPoint& point : panel.curves.front().points)
       most = std::max(most, point.y);
     panel.y.range = {0.5, 2.0 * most};
   }
@@ -163,15 +163,15 @@ void local_times_figure(const FinderStudyData& data, const fs::path& folder) {
     const std::string job = fmt::format("local/{}/{:.6g}/{}", data.states.front().name, data.shown_step, fraction);
     return data.result(job).at("ns_per_call").at(finder).get<double>();
   };
-  const std::vector<PlotCurve> curves = curves_of_finders(data.moved_fractions, time);
-  Panel panel{.x = {.label = "fraction of particles with an earlier collision in the step"},
-              .y = {.label = "time per call (ns)"},
-              .curves = curves};
+  const std::vector<plot::PlotCurve> curves = curves_of_finders(data.moved_fractions, time);
+  plot::Panel panel{.x = {.label = "fraction of particles with an earlier collision in the step"},
+                    .y = {.label = "time per call (ns)"},
+                    .curves = curves};
   panel.y.range.low = 0.0;
-  for (const PlotCurve& curve : curves)
-    for (const PlotPoint& point : curve.points)
+  for (const plot::PlotCurve& curve : curves)
+    for (const plot::PlotPoint& point : curve.points)
       panel.y.range.high = std::max(panel.y.range.high, 1.06 * point.y);
-  save_figures({.panels = {panel}, .width = 800}, folder, "local-times");
+  plot::save_figures({.panels = {panel}, .width = 800}, folder, "local-times");
 }
 
 } // namespace
@@ -179,7 +179,7 @@ void local_times_figure(const FinderStudyData& data, const fs::path& folder) {
 void draw_finder_figures(const FinderStudyData& data) {
   const fs::path folder = data.folder / "figures";
   fs::create_directories(folder);
-  PictureOptions options;
+  render::PictureOptions options;
   options.title = "Clumped by self-gravity, equal sizes";
   options.width = 700;
   assert(data.states.size() == 4 && "equal-early, equal-clumped, power-early, power-clumped");
@@ -192,4 +192,4 @@ void draw_finder_figures(const FinderStudyData& data) {
   local_times_figure(data, folder);
 }
 
-} // namespace keeler
+} // namespace keeler::study

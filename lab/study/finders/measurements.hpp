@@ -5,7 +5,7 @@
 #include "perturbed_ring/perturbed_ring.hpp"
 #include "states.hpp"
 
-namespace keeler {
+namespace keeler::study {
 
 /// The paper's five, in its order.
 inline const std::vector<std::string> paper_finders = {"original", "newton-full", "newton-cubic", "linear-full",
@@ -44,4 +44,4 @@ Json local_times(const StudyState& state, double step, double moved_fraction, in
 /// Measures how far the means of a perturbed ring drift on a path (Figure 1).
 Json drift_of_means(const PerturbedRing& ring, const std::string& path);
 
-} // namespace keeler
+} // namespace keeler::study

@@ -10,7 +10,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::study {
 
 std::string number(double value) {
   return fmt::format("{:.3g}", value);
@@ -64,7 +64,7 @@ std::vector<double> FinderStudyData::repeated(const std::string& state, double s
 
 double FinderStudyData::timed(const std::string& state, double step, const std::string& finder,
                               const char* field) const {
-  return median(repeated(state, step, finder, field));
+  return statistics::median(repeated(state, step, finder, field));
 }
 
 double FinderStudyData::finder_fraction(const std::string& state, const std::string& finder) const {
@@ -77,10 +77,11 @@ double FinderStudyData::scatter() const {
   each_panel([&](const std::string& state, double step) {
     for (const std::string& finder : all_finders()) {
       const std::vector<double> t = repeated(state, step, finder, "cpu_s");
-      all.push_back(0.5 * (*std::max_element(t.begin(), t.end()) - *std::min_element(t.begin(), t.end())) / median(t));
+      all.push_back(0.5 * (*std::max_element(t.begin(), t.end()) - *std::min_element(t.begin(), t.end())) /
+                    statistics::median(t));
     }
   });
-  return median(all);
+  return statistics::median(all);
 }
 
 const Json& FinderStudyData::shown(const std::string& kind, const std::string& state) const {
@@ -107,4 +108,4 @@ StepLaw FinderStudyData::law_of(const std::string& state, const std::string& fin
   return fit_step_law(steps, times);
 }
 
-} // namespace keeler
+} // namespace keeler::study

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::study {
 
 using Row = std::vector<std::string>;
 using Rows = std::vector<Row>; ///< a table with its header row first
@@ -31,4 +31,4 @@ double mean_over(const Json& audit, const std::string& exit, const char* field);
 /// Returns a table of the paper's claims, the measurements, and the verdicts.
 Rows paper_claims(const FinderStudyData& data);
 
-} // namespace keeler
+} // namespace keeler::study

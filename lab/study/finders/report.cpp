@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::study {
 namespace {
 
 Json row_of(const FinderStudyData& data, const StudyState& state, double step, const std::string& finder, int repeat) {
@@ -44,8 +44,8 @@ public:
     local_times();
     rejection();
     straight_lines();
-    write_text(data_.folder / "report.md", document_.markdown());
-    write_text(data_.folder / "report.html", document_.html());
+    files::write_text(data_.folder / "report.md", document_.markdown());
+    files::write_text(data_.folder / "report.html", document_.html());
   }
 
 private:
@@ -349,7 +349,7 @@ private:
   }
 
   const FinderStudyData& data_;
-  Document document_;
+  report::Document document_;
   bool with_figures_;
 };
 
@@ -362,18 +362,18 @@ void write_finder_tables(const FinderStudyData& data) {
       for (const double step : data.steps)
         for (const std::string& finder : all_finders())
           rows.push_back(row_of(data, state, step, finder, repeat));
-  write_text(data.folder / "finders.csv", csv_of(rows));
+  files::write_text(data.folder / "finders.csv", report::csv_of(rows));
 
   Json other = Json::object(); // all other measurements, by job name
   for (const auto& [name, result] : data.results)
     if (!name.starts_with("run/"))
       other[name] = result;
-  write_text(data.folder / "finders.json",
-             json_text(Json{{"made", data.made}, {"rows", rows}, {"measurements", other}}, 1) + "\n");
+  files::write_text(data.folder / "finders.json",
+                    json_text(Json{{"made", data.made}, {"rows", rows}, {"measurements", other}}, 1) + "\n");
 }
 
 void write_finder_report(const FinderStudyData& data, bool with_figures) {
   Report(data, with_figures).write();
 }
 
-} // namespace keeler
+} // namespace keeler::study

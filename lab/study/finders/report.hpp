@@ -5,7 +5,7 @@
 #include "states.hpp"
 #include "step_law.hpp"
 
-namespace keeler {
+namespace keeler::study {
 
 /// The data of tables, figures and report.
 struct FinderStudyData {
@@ -65,4 +65,4 @@ void draw_finder_figures(const FinderStudyData& data);
 /// Writes report.md and report.html.
 void write_finder_report(const FinderStudyData& data, bool with_figures);
 
-} // namespace keeler
+} // namespace keeler::study

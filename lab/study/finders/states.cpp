@@ -17,7 +17,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::study {
 namespace {
 
 constexpr double early_orbits = 0.25;  // erases the features of the initial state; too short for clumps
@@ -25,16 +25,16 @@ constexpr double clumped_orbits = 3.0; // in a box below four λ_cr, with too fe
 
 struct Recipe {
   const char* name;
-  SizeLaw sizes;
+  particles::SizeLaw sizes;
   const char* table; // `sizes` as in a scene file
   double optical_depth;
   double dispersion; // initial c_x, ⟨r⟩ Ω
 };
 
 // λ_cr is 61–62 m with both: a box of 10⁴ equal particles, or of 5000 with the power law, is at least 4 λ_cr wide.
-const Recipe recipes[] = {
-    {"equal", equal_sizes(1.0), "{ law = \"equal\", radius = 1.0 }", 0.5, 3.5},
-    {"power", power_sizes(2.9, 0.5, 5.0), "{ law = \"power\", exponent = 2.9, min = 0.5, max = 5.0 }", 0.25, 3.7}};
+const Recipe recipes[] = {{"equal", particles::equal_sizes(1.0), "{ law = \"equal\", radius = 1.0 }", 0.5, 3.5},
+                          {"power", particles::power_sizes(2.9, 0.5, 5.0),
+                           "{ law = \"power\", exponent = 2.9, min = 0.5, max = 5.0 }", 0.25, 3.7}};
 
 Scene scene_of(const Recipe& r, std::size_t count) {
   const double size = std::sqrt(static_cast<double>(count) * pi * r.sizes.mean_power(2) / r.optical_depth);
@@ -72,7 +72,7 @@ Made evolve(const Scene& scene, double orbits) {
   const long steps = std::lround(orbits / scene.time.step);
   for (long k = 0; k < steps; ++k)
     simulation.advance();
-  const TimeSplit& split = simulation.time_split();
+  const simulation::TimeSplit& split = simulation.time_split();
   const double passes = 1e-9 * static_cast<double>(steps * static_cast<long>(scene.particles.count));
   return Made{simulation.patch(),
               fmt::format("{} particles, {} orbits with self-gravity from a uniform start (wall time per particle and "
@@ -82,14 +82,14 @@ Made evolve(const Scene& scene, double orbits) {
 
 Made settle(const Scene& scene, const std::function<void(const std::string&)>& say) {
   double next = 0.0;
-  const auto progress = [&](const ClumpingProgress& p) {
+  const auto progress = [&](const initial_conditions::ClumpingProgress& p) {
     if (p.orbits < next)
       return;
     say(fmt::format("clumping: {:.2f} orbits, contrast {:.3f}", p.orbits, p.contrast));
     next = p.orbits + 0.5;
   };
-  const ClumpedState state = clumped_state(scene, {}, progress);
-  const Settling& s = state.clumping.settling;
+  const initial_conditions::ClumpedState state = initial_conditions::clumped_state(scene, {}, progress);
+  const initial_conditions::Settling& s = state.clumping.settling;
   return Made{state.patch,
               fmt::format("{} particles, {:.3g} orbits with self-gravity, until the viscosity from the loss of energy "
                           "and the wake lengths settled (over {} orbits they change by {:.0f}, {:.0f} and {:.0f} %)",
@@ -128,14 +128,14 @@ std::vector<StudyState> study_states(const std::filesystem::path& folder, std::s
       if (!std::filesystem::exists(note) || !std::filesystem::exists(file)) {
         say(fmt::format("making the state {}", state.name));
         const Made made = make(state.scene, clumped, say);
-        write_snapshot(file, made.patch, {state.scene.resolved, collect_provenance({}), {}});
-        write_text(note, made.how); // written last: it marks the state as complete
+        io::write_snapshot(file, made.patch, {state.scene.resolved, io::collect_provenance({}), {}});
+        files::write_text(note, made.how); // written last: it marks the state as complete
       }
-      state.patch = read_snapshot(file).patch;
-      state.made = read_text(note);
+      state.patch = io::read_snapshot(file).patch;
+      state.made = files::read_text(note);
       states.push_back(std::move(state));
     }
   return states;
 }
 
-} // namespace keeler
+} // namespace keeler::study

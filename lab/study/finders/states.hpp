@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::study {
 
 struct StudyState {
   std::string name; ///< equal-early, equal-clumped, power-early, power-clumped
@@ -28,4 +28,4 @@ struct StudyState {
 std::vector<StudyState> study_states(const std::filesystem::path& folder, std::size_t count,
                                      const std::function<void(const std::string&)>& say);
 
-} // namespace keeler
+} // namespace keeler::study

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::study {
 namespace {
 
 // Fits A and B for a given d by linear least squares of (A/h + B h^d)/T − 1. Returns the sum of squares.
@@ -53,4 +53,4 @@ StepLaw fit_step_law(std::span<const double> steps, std::span<const double> time
   return law;
 }
 
-} // namespace keeler
+} // namespace keeler::study

@@ -3,7 +3,7 @@
 
 #include <span>
 
-namespace keeler {
+namespace keeler::study {
 
 struct StepLaw {
   double a = 0.0, b = 0.0, d = 0.0;
@@ -15,4 +15,4 @@ struct StepLaw {
 /// Precondition: `steps` and `times` have equal lengths, at least 3.
 StepLaw fit_step_law(std::span<const double> steps, std::span<const double> times);
 
-} // namespace keeler
+} // namespace keeler::study

@@ -16,7 +16,7 @@
 #include <cmath>
 #include <optional>
 
-namespace keeler {
+namespace keeler::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -215,7 +215,7 @@ bool study_finders(const FinderStudySettings& settings, const std::atomic<bool>&
   const Plan plan = plan_of(settings);
   const std::map<std::string, std::string> made = study_provenance(settings.arguments);
   const Json begun = open_study_folder(settings.folder, options_of(plan), made);
-  const FolderLock lock(settings.folder);
+  const runs::FolderLock lock(settings.folder);
   const std::optional<std::vector<StudyState>> states = states_unless_stopped(settings, plan, stop);
   if (!states)
     return false;
@@ -246,4 +246,4 @@ bool study_finders(const FinderStudySettings& settings, const std::atomic<bool>&
   return true;
 }
 
-} // namespace keeler
+} // namespace keeler::study

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::study {
 
 struct FinderStudySettings {
   std::filesystem::path folder;
@@ -30,4 +30,4 @@ struct FinderStudySettings {
 /// same settings continues. Throws UsageError when the folder holds a study with other settings, and IoError.
 bool study_finders(const FinderStudySettings& settings, const std::atomic<bool>& stop);
 
-} // namespace keeler
+} // namespace keeler::study

@@ -14,7 +14,7 @@
 #include <complex>
 #include <optional>
 
-namespace keeler {
+namespace keeler::study {
 namespace {
 
 constexpr Frequencies unit_frequencies{1.0, 1.0};
@@ -23,19 +23,19 @@ constexpr double ring_frequency = 1.95e-4; // rad/s; without effect at a constan
 struct Ring {
   Particles particles;
   ShearingBox box;
-  EccentricityWave pattern;
+  initial_conditions::EccentricityWave pattern;
 };
 
 Ring make_ring(const PerturbedRing& settings, double step) {
   assert(settings.count > 0 && settings.optical_depth > 0.0);
   const double side = std::sqrt(pi * static_cast<double>(settings.count) / settings.optical_depth);
-  UniformRequest request;
+  initial_conditions::UniformRequest request;
   request.box = {side, side, unit_frequencies.shear(), 0.0};
   request.frequencies = unit_frequencies;
   request.radii.assign(settings.count, 1.0);
   request.dispersion_x = settings.dispersion;
   request.dispersion_z = 0.65 * settings.dispersion; // as in equilibria without self-gravity
-  request.streamlines = Streamlines::bunched(settings.waves, side, settings.bunching);
+  request.streamlines = initial_conditions::Streamlines::bunched(settings.waves, side, settings.bunching);
   request.streamlines.inclination = settings.inclination;
   request.seed = settings.seed;
   return {particles_from(uniform_patch(request), 0.5 * step), request.box, request.streamlines.waves.front()};
@@ -65,9 +65,9 @@ void drive(Ring& ring, double epoch, double step) {
 // Moves the particles on straight or curved paths; exactly one of `straight_` and `curved_` is set.
 class Mover {
 public:
-  Mover(const PerturbedRing& ring, const std::string& path, double step, DriftObserver* observer) {
-    CollisionSettings settings;
-    settings.restitution = constant_restitution(ring.restitution);
+  Mover(const PerturbedRing& ring, const std::string& path, double step, collision::DriftObserver* observer) {
+    collision::CollisionSettings settings;
+    settings.restitution = collision::constant_restitution(ring.restitution);
     if (path == straight_path || path == control_path) {
       straight_.emplace(settings, unit_frequencies, ring_frequency, step);
       return;
@@ -89,14 +89,14 @@ public:
 
 private:
   std::optional<StraightDrift> straight_;
-  std::optional<DriftPhase> curved_;
+  std::optional<collision::DriftPhase> curved_;
   std::uint64_t collisions_ = 0;
   CollisionTally tally_;
 };
 
 // Advances the elements to the next epoch and wraps them into the cell. Returns the net number of box widths by which
 // guiding centres were wrapped inward, summed over the particles.
-std::int64_t move_on(Ring& ring, const Rebase& rebase, double offset) {
+std::int64_t move_on(Ring& ring, const hill::Rebase& rebase, double offset) {
   std::int64_t wraps = 0;
   for (Body& body : ring.particles.bodies) {
     rebase(body.elements);
@@ -126,7 +126,7 @@ Means means_of(const Ring& ring, double epoch) {
 } // namespace
 
 std::vector<DriftRow> perturbed_ring_drift(const PerturbedRing& request, const std::string& path,
-                                           DriftObserver* observer) {
+                                           collision::DriftObserver* observer) {
   assert(request.step_orbits > 0.0 && request.samples > 0);
   PerturbedRing settings = request;
   if (path == control_path)
@@ -135,7 +135,7 @@ std::vector<DriftRow> perturbed_ring_drift(const PerturbedRing& request, const s
   const auto steps = std::llround(settings.orbits / settings.step_orbits);
   Ring ring = make_ring(settings, step);
   Mover mover(settings, path, step, observer);
-  const Rebase rebase(unit_frequencies, step);
+  const hill::Rebase rebase(unit_frequencies, step);
   const Means first = means_of(ring, 0.5 * step);
   std::vector<DriftRow> rows;
   std::int64_t wraps = 0;
@@ -162,4 +162,4 @@ std::string drift_csv(const std::vector<DriftRow>& rows) {
   return text;
 }
 
-} // namespace keeler
+} // namespace keeler::study

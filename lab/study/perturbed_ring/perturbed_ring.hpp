@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::study {
 
 /// Lengths in particle radii.
 struct PerturbedRing {
@@ -51,9 +51,9 @@ struct DriftRow {
 /// Runs the ring on one of the two straight paths or with the named finder, and returns the drift of the means. An
 /// observer may watch the drift phase of a finder. Throws UsageError for an unknown name.
 std::vector<DriftRow> perturbed_ring_drift(const PerturbedRing& ring, const std::string& path,
-                                           DriftObserver* observer = nullptr);
+                                           collision::DriftObserver* observer = nullptr);
 
 /// Returns the rows as CSV with a header.
 std::string drift_csv(const std::vector<DriftRow>& rows);
 
-} // namespace keeler
+} // namespace keeler::study

@@ -6,7 +6,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::study {
 namespace {
 
 constexpr std::uint32_t max_collisions = 100000; // per particle and step
@@ -29,7 +29,7 @@ double time_to_contact(const State& relative, double radius_sum) {
 
 } // namespace
 
-StraightDrift::StraightDrift(const CollisionSettings& settings, const Frequencies& frequencies,
+StraightDrift::StraightDrift(const collision::CollisionSettings& settings, const Frequencies& frequencies,
                              double orbital_frequency, double step)
     : settings_(settings), frequencies_(frequencies), orbital_frequency_(orbital_frequency), step_(step) {
   assert(step > 0.0);
@@ -48,7 +48,7 @@ std::uint64_t StraightDrift::collide(Particles& particles, const ShearingBox& bo
     });
   std::uint64_t collisions = 0;
   while (!events_.empty()) {
-    const Event event = events_.take_first();
+    const collision::Event event = events_.take_first();
     if (event.low_count == event_counts_[event.low] && event.high_count == event_counts_[event.high])
       collisions += carry_out(event);
   }
@@ -120,7 +120,7 @@ void StraightDrift::predict(std::size_t i, std::size_t j, const Image& image) {
 
 // Carries out a contact with positions from the lines and velocities from the epicycles; the new epicycles match both.
 // Returns false if the particles do not approach.
-bool StraightDrift::carry_out(const Event& event) {
+bool StraightDrift::carry_out(const collision::Event& event) {
   Body &a = particles_->bodies[event.low], &b = particles_->bodies[event.high];
   const Rotation rotation(frequencies_, event.time);
   State of_a{lines_[event.low].at(event.time), state_at(a.elements, frequencies_, rotation).velocity};
@@ -128,7 +128,7 @@ bool StraightDrift::carry_out(const Event& event) {
   const State shift = image_state(event.image, event.time);
   const Vec3 normal = (of_b.position + shift.position - of_a.position).normalized();
   const double speed = -(of_b.velocity + shift.velocity - of_a.velocity).dot(normal);
-  const Rebound after = rebound(settings_, speed, a.radius, b.radius, orbital_frequency_);
+  const collision::Rebound after = rebound(settings_, speed, a.radius, b.radius, orbital_frequency_);
   if (!(speed > -after.speed))
     return false; // the lines approach but the particles do not
   const Vec3 impulse = a.mass * b.mass / (a.mass + b.mass) * (speed + after.speed) * normal;
@@ -149,4 +149,4 @@ bool StraightDrift::carry_out(const Event& event) {
   return true;
 }
 
-} // namespace keeler
+} // namespace keeler::study

@@ -14,12 +14,12 @@
 #include <keeler/hill/shearing_box.hpp>
 #include <keeler/particles/store.hpp>
 
-namespace keeler {
+namespace keeler::study {
 
 class StraightDrift {
 public:
   /// `step` is the length h of a drift (rad). Precondition: h > 0.
-  StraightDrift(const CollisionSettings& settings, const Frequencies& frequencies, double orbital_frequency,
+  StraightDrift(const collision::CollisionSettings& settings, const Frequencies& frequencies, double orbital_frequency,
                 double step);
 
   /// Carries out the collisions in [−h/2, h/2) around the epoch of the elements, in the order of events.hpp, and
@@ -39,9 +39,9 @@ private:
   template<class Visit> void visit_candidates(std::size_t i, const Visit& visit) const;
   void predict(std::size_t i, std::size_t j, const Image& image);
   State image_state(const Image& image, double time) const;
-  bool carry_out(const Event& event);
+  bool carry_out(const collision::Event& event);
 
-  CollisionSettings settings_;
+  collision::CollisionSettings settings_;
   Frequencies frequencies_;
   double orbital_frequency_, step_;
 
@@ -49,12 +49,12 @@ private:
   Particles* particles_ = nullptr;
   ShearingBox box_;
   double offset_ = 0.0;
-  PeriodicGrid grid_;
-  EventQueue events_;
+  cells::PeriodicGrid grid_;
+  collision::EventQueue events_;
   std::vector<Line> lines_;
   std::vector<Vec3> binned_; // mid-step positions in the grid
   std::vector<std::uint32_t> event_counts_;
   double largest_radius_ = 0.0, largest_speed_ = 0.0, largest_stray_ = 0.0; // peculiar speed; distance from binned_
 };
 
-} // namespace keeler
+} // namespace keeler::study

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <map>
 
-namespace keeler {
+namespace keeler::study {
 namespace {
 
 using Solver = GravitySettings::Solver;
@@ -130,7 +130,7 @@ std::string from_name(double radius) {
 // Returns the choice without the particles smaller than `cut`: by the key `min` of a law with a density, by a table of
 // the remaining radii for listed sizes.
 StudyChoice cut_from(const Scene& scene, double cut) {
-  const SizeLaw& law = scene.particles.sizes;
+  const particles::SizeLaw& law = scene.particles.sizes;
   if (law.listed == 0)
     return with_sizes(scene, from_name(cut), fmt::format("particles.sizes.min={}", cut));
   std::map<double, std::size_t> counts;
@@ -144,7 +144,7 @@ StudyChoice cut_from(const Scene& scene, double cut) {
 }
 
 StudyChoices size_choices(const Scene& scene, bool quick) {
-  const SizeLaw& law = scene.particles.sizes;
+  const particles::SizeLaw& law = scene.particles.sizes;
   if (law.smallest == law.largest)
     throw UsageError(fmt::format("all particles of the scene have one size, {:g} m, so no sizes can be cut; give "
                                  "it a distribution, for example --set 'particles.sizes={{ law = \"power\", exponent = "
@@ -196,4 +196,4 @@ StudyChoices study_choices(SceneStudyKind kind, const Scene& scene, bool quick) 
   return kinds[static_cast<std::size_t>(kind)].choices(scene, quick);
 }
 
-} // namespace keeler
+} // namespace keeler::study

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::study {
 
 /// One setting, as overrides of the scene.
 struct StudyChoice {
@@ -46,4 +46,4 @@ Kicks steps_in(double interval, double max_step);
 /// Precondition: `step` > 0.
 Kicks kicks_of(double step, double interval);
 
-} // namespace keeler
+} // namespace keeler::study

@@ -8,20 +8,20 @@
 
 #include <cmath>
 
-namespace keeler {
+namespace keeler::study {
 namespace {
 
 // Adds a setting: its cost, its error or difference y, and half the width of y's interval.
-void add(const SettingMeans& setting, double y, double bound, std::vector<PlotPoint>& points) {
+void add(const SettingMeans& setting, double y, double bound, std::vector<plot::PlotPoint>& points) {
   const double cost = setting.scatter[number_at("cpu_s_per_orbit")].mean;
   if (!std::isnan(cost) && !std::isnan(y))
     points.push_back({cost, y, std::isnan(bound) ? 0.0 : bound, setting.name});
 }
 
-std::vector<PlotPoint> force_errors(const StudyMeans& means) {
-  std::vector<PlotPoint> points;
+std::vector<plot::PlotPoint> force_errors(const StudyMeans& means) {
+  std::vector<plot::PlotPoint> points;
   for (const SettingMeans& setting : means.settings) {
-    const Scatter& error = setting.scatter[number_at("force_error")];
+    const statistics::Scatter& error = setting.scatter[number_at("force_error")];
     add(setting, error.mean, mean_bound(error), points);
   }
   return points;
@@ -35,12 +35,12 @@ std::size_t drawn_number(const StudyPlan& plan) {
                                                      : "translational_viscosity_m2_s");
 }
 
-std::vector<PlotPoint> differences(const StudyMeans& means, std::size_t number) {
-  const Scatter& reference = means.settings[means.reference].scatter[number];
+std::vector<plot::PlotPoint> differences(const StudyMeans& means, std::size_t number) {
+  const statistics::Scatter& reference = means.settings[means.reference].scatter[number];
   const double percent = 100.0 / std::fabs(reference.mean);
-  std::vector<PlotPoint> points;
+  std::vector<plot::PlotPoint> points;
   for (std::size_t s = 0; s < means.settings.size(); ++s) {
-    const MeanDifference& difference = means.settings[s].from_reference[number];
+    const statistics::MeanDifference& difference = means.settings[s].from_reference[number];
     if (s == means.reference)
       add(means.settings[s], 0.0, percent * mean_bound(reference), points);
     else
@@ -50,9 +50,9 @@ std::vector<PlotPoint> differences(const StudyMeans& means, std::size_t number) 
 }
 
 // Returns the range of the cost axis, wider than the points by the space for their labels.
-AxisRange range_of_costs(const std::vector<PlotPoint>& points) {
-  AxisRange range;
-  for (const PlotPoint& point : points)
+plot::AxisRange range_of_costs(const std::vector<plot::PlotPoint>& points) {
+  plot::AxisRange range;
+  for (const plot::PlotPoint& point : points)
     range.include(point.x);
   return {range.low / 1.3, range.high * 1.6};
 }
@@ -61,10 +61,10 @@ AxisRange range_of_costs(const std::vector<PlotPoint>& points) {
 
 bool draw_study_figure(const StudyPlan& plan, const StudyMeans& means, const std::filesystem::path& folder) {
   const bool of_forces = plan.kind == SceneStudyKind::mesh;
-  const std::vector<PlotPoint> points = of_forces ? force_errors(means) : differences(means, drawn_number(plan));
+  const std::vector<plot::PlotPoint> points = of_forces ? force_errors(means) : differences(means, drawn_number(plan));
   if (points.empty())
     return false;
-  Panel panel;
+  plot::Panel panel;
   panel.x = {.label = "processor time per orbit (s)", .log = true, .range = range_of_costs(points)};
   panel.y = {.label = of_forces ? "rms force error"
                                 : fmt::format("{} (% from the reference)", study_numbers()[drawn_number(plan)].title),
@@ -81,8 +81,8 @@ bool draw_study_figure(const StudyPlan& plan, const StudyMeans& means, const std
     reference_line(0.0, "");
   panel.curves.push_back({.points = points, .line = false, .marks = true});
   std::filesystem::create_directories(folder / "figures");
-  save_figures({.panels = {panel}}, folder / "figures", "pareto");
+  plot::save_figures({.panels = {panel}}, folder / "figures", "pareto");
   return true;
 }
 
-} // namespace keeler
+} // namespace keeler::study

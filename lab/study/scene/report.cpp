@@ -14,7 +14,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::study {
 namespace {
 
 using Table = std::vector<std::vector<std::string>>;
@@ -62,7 +62,7 @@ std::string how_started(const StudyPlan& plan) {
       plan.end(), plan.since(), pluralize(plan.seeds, "seed"));
 }
 
-void introduce(const StudyPlan& plan, const std::map<std::string, std::string>& made, Document& document) {
+void introduce(const StudyPlan& plan, const std::map<std::string, std::string>& made, report::Document& document) {
   document.paragraph(what_changes(plan));
   document.paragraph(how_started(plan));
   document.paragraph(
@@ -71,7 +71,7 @@ void introduce(const StudyPlan& plan, const std::map<std::string, std::string>& 
   document.paragraph(made_by(made));
 }
 
-std::string with_bound(const Scatter& scatter) {
+std::string with_bound(const statistics::Scatter& scatter) {
   if (scatter.count == 0)
     return "–";
   const double bound = mean_bound(scatter);
@@ -115,7 +115,7 @@ Table table_of_means(const StudyMeans& means, bool physics) {
 }
 
 // Returns a difference such as "+0.3 ± 1.2", bold when it is beyond the scatter.
-std::string in_percent(const MeanDifference& d, double reference) {
+std::string in_percent(const statistics::MeanDifference& d, double reference) {
   assert(reference > 0.0);
   const double difference = 100.0 * d.difference / reference, bound = 100.0 * d.bound / reference;
   return fmt::format("{0}{1:+.{3}f} ± {2:.{3}f}{0}", d.within() ? "" : "**", difference, bound, bound < 0.1 ? 2 : 1);
@@ -126,7 +126,7 @@ Table table_of_differences(const StudyMeans& means) {
   Table table = table_of(means, numbers, "% from the reference");
   for (std::size_t s = 0; s < means.settings.size(); ++s)
     for (const std::size_t n : numbers) {
-      const MeanDifference& d = means.settings[s].from_reference[n];
+      const statistics::MeanDifference& d = means.settings[s].from_reference[n];
       table[s + 1].push_back(d.known() ? in_percent(d, std::fabs(means.settings[means.reference].scatter[n].mean))
                                        : "–");
     }
@@ -134,7 +134,7 @@ Table table_of_differences(const StudyMeans& means) {
   return table;
 }
 
-void show_lost_contacts(const StudyPlan& plan, Document& document) {
+void show_lost_contacts(const StudyPlan& plan, report::Document& document) {
   if (plan.scene.collisions.finder != "certified")
     document.paragraph(fmt::format("The scene's finder is `{}`. A run cannot count the contacts that it missed; "
                                    "`finder_gave_up` and `largest_overlap` of `study.csv` show the consequences, and "
@@ -142,9 +142,9 @@ void show_lost_contacts(const StudyPlan& plan, Document& document) {
                                    plan.scene.collisions.finder));
 }
 
-void show_failed(const std::vector<RunRow>& runs, Document& document) {
+void show_failed(const std::vector<batch::RunRow>& runs, report::Document& document) {
   Table table = {{"run", "reason"}};
-  for (const RunRow& run : runs)
+  for (const batch::RunRow& run : runs)
     if (!run.reason.empty())
       table.push_back({run.run->name, run.reason});
   if (table.size() == 1)
@@ -155,16 +155,16 @@ void show_failed(const std::vector<RunRow>& runs, Document& document) {
 
 } // namespace
 
-void write_study_tables(const StudyPlan& plan, const std::vector<RunRow>& runs, const StudyMeans& means,
+void write_study_tables(const StudyPlan& plan, const std::vector<batch::RunRow>& runs, const StudyMeans& means,
                         const std::filesystem::path& folder) {
-  write_text(folder / "study.csv", csv_with_gaps(runs_as_json(plan, runs)));
-  write_text(folder / "settings.csv", csv_with_gaps(means_as_json(means)));
+  files::write_text(folder / "study.csv", report::csv_with_gaps(runs_as_json(plan, runs)));
+  files::write_text(folder / "settings.csv", report::csv_with_gaps(means_as_json(means)));
 }
 
-void write_study_report(const StudyPlan& plan, const std::vector<RunRow>& runs, const StudyMeans& means,
+void write_study_report(const StudyPlan& plan, const std::vector<batch::RunRow>& runs, const StudyMeans& means,
                         const std::map<std::string, std::string>& made, const std::filesystem::path& folder,
                         bool with_figure) {
-  Document document(fmt::format("Study of the {} of {}", name_of(plan.kind), plan.scene_name));
+  report::Document document(fmt::format("Study of the {} of {}", name_of(plan.kind), plan.scene_name));
   introduce(plan, made, document);
   document.heading("Verdict");
   if (plan.quick)
@@ -191,8 +191,8 @@ void write_study_report(const StudyPlan& plan, const std::vector<RunRow>& runs, 
   document.table(table_of_differences(means));
   show_failed(runs, document);
   document.paragraph("`study.csv` has all numbers of each run, `settings.csv` those of each setting.");
-  write_text(folder / "report.md", document.markdown());
-  write_text(folder / "report.html", document.html());
+  files::write_text(folder / "report.md", document.markdown());
+  files::write_text(folder / "report.html", document.html());
 }
 
-} // namespace keeler
+} // namespace keeler::study

@@ -13,14 +13,14 @@
 #include <limits>
 #include <map>
 
-namespace keeler {
+namespace keeler::study {
 
 struct FinishedRun {
   const StudyPlan& plan;
   const Scene& scene;
   std::filesystem::path folder;
-  Record summary;
-  SeriesTable series;
+  quantities::Record summary;
+  io::SeriesTable series;
 
   std::optional<double> told(const std::string& name) const { return number_in(summary, name); }
 };
@@ -83,16 +83,17 @@ Maybe kick_cost(const FinishedRun& run) {
 }
 
 Maybe transmission(const FinishedRun& run) {
-  const std::vector<Patch> patches = load_patches(run.folder, last_orbits).patches;
+  const std::vector<Patch> patches = runs::load_patches(run.folder, last_orbits).patches;
   assert(!patches.empty());
-  return occultation(patches, RayLattice(patches.front().box, rays, footprint), {pi / 2.0, 0.0}).transmission.value;
+  return occultation(patches, diagnostics::RayLattice(patches.front().box, rays, footprint), {pi / 2.0, 0.0})
+      .transmission.value;
 }
 
 StudyNumber told(const std::string& column, const std::string& title, const std::string& name) {
   return {column, title, false, [name](const FinishedRun& run) { return run.told(name); }};
 }
 
-std::vector<StudyNumber> make_numbers(const RunQuantities& quantities) {
+std::vector<StudyNumber> make_numbers(const batch::RunQuantities& quantities) {
   std::vector<StudyNumber> all = {{"cpu_s_per_orbit", "processor s per orbit", false, cpu_per_orbit},
                                   told("peak_memory_mb", "memory (MB)", "peak_memory_mb"),
                                   {"step_orbits", "step (orbits)", false, step_of},
@@ -102,7 +103,7 @@ std::vector<StudyNumber> make_numbers(const RunQuantities& quantities) {
                                   told("finder_gave_up", "", "finder_gave_up"),
                                   told("largest_overlap", "", "largest_overlap"),
                                   {"transmission", "vertical transmission", true, transmission}};
-  for (const RunColumn& column : quantities.columns()) {
+  for (const batch::RunColumn& column : quantities.columns()) {
     const auto title = compared_quantities.find(column.name);
     const bool compared = title != compared_quantities.end();
     all.push_back({column.name, compared ? title->second : std::string(), compared, {}});
@@ -110,10 +111,11 @@ std::vector<StudyNumber> make_numbers(const RunQuantities& quantities) {
   return all;
 }
 
-RunNumbers measured(const StudyPlan& plan, const std::vector<StudyNumber>& numbers, const PlannedRun& run,
-                    const std::filesystem::path& folder) {
-  const FinishedRun finished{plan, run.scene, folder, read_summary(folder), read_series(folder / "series.csv")};
-  RunNumbers all = plan.quantities.measure(folder, run.scene, plan.since());
+batch::RunNumbers measured(const StudyPlan& plan, const std::vector<StudyNumber>& numbers, const batch::PlannedRun& run,
+                           const std::filesystem::path& folder) {
+  const FinishedRun finished{plan, run.scene, folder, runs::read_summary(folder),
+                             io::read_series(folder / "series.csv")};
+  batch::RunNumbers all = plan.quantities.measure(folder, run.scene, plan.since());
   std::vector<std::optional<Estimate>> values;
   std::size_t quantity = 0;
   for (const StudyNumber& number : numbers) {
@@ -143,7 +145,7 @@ std::size_t smallest_force_error(const std::vector<SettingMeans>& settings) {
 } // namespace
 
 const std::vector<StudyNumber>& study_numbers() {
-  static const std::vector<StudyNumber> numbers = make_numbers(RunQuantities());
+  static const std::vector<StudyNumber> numbers = make_numbers(batch::RunQuantities());
   return numbers;
 }
 
@@ -161,46 +163,47 @@ std::size_t number_at(const std::string& column) {
   return static_cast<std::size_t>(found - all.begin());
 }
 
-std::vector<RunRow> measure_runs(const StudyPlan& plan, const std::vector<PlannedRun>& runs,
-                                 const RunFolders& folders) {
+std::vector<batch::RunRow> measure_runs(const StudyPlan& plan, const std::vector<batch::PlannedRun>& runs,
+                                        const batch::RunFolders& folders) {
   const std::vector<StudyNumber> numbers = study_numbers(plan);
-  std::vector<RunRow> rows = run_rows(runs, folders, [&](const PlannedRun& run, const std::filesystem::path& folder) {
-    return measured(plan, numbers, run, folder);
-  });
-  for (RunRow& row : rows)
-    if (row.status == RunStatus::unfinished) {
-      row.status = RunStatus::failed;
+  std::vector<batch::RunRow> rows =
+      run_rows(runs, folders, [&](const batch::PlannedRun& run, const std::filesystem::path& folder) {
+        return measured(plan, numbers, run, folder);
+      });
+  for (batch::RunRow& row : rows)
+    if (row.status == batch::RunStatus::unfinished) {
+      row.status = batch::RunStatus::failed;
       row.reason = "not finished";
     }
   return rows;
 }
 
-StudyMeans means_of(const StudyChoices& choices, const std::vector<RunRow>& runs,
+StudyMeans means_of(const StudyChoices& choices, const std::vector<batch::RunRow>& runs,
                     const std::vector<StudyNumber>& numbers) {
   StudyMeans means;
   means.numbers = numbers;
-  for (const PointRow& point : point_rows(runs, choices.choices.size(), numbers.size()))
+  for (const batch::PointRow& point : point_rows(runs, choices.choices.size(), numbers.size()))
     means.settings.push_back({point, choices.choices[point.point].name, {}});
   means.reference = choices.reference.value_or(smallest_force_error(means.settings));
   assert(means.reference < means.settings.size());
-  const std::vector<Scatter>& reference = means.settings[means.reference].scatter;
+  const std::vector<statistics::Scatter>& reference = means.settings[means.reference].scatter;
   for (std::size_t s = 0; s < means.settings.size(); ++s)
     for (std::size_t n = 0; n < numbers.size(); ++n) // a reference of 0, as a stress without gravity, has no relative
       means.settings[s].from_reference.push_back(    // difference
           s != means.reference && numbers[n].compared && reference[n].mean != 0.0
               ? mean_difference(reference[n], means.settings[s].scatter[n])
-              : MeanDifference{unknown, unknown});
+              : statistics::MeanDifference{unknown, unknown});
   return means;
 }
 
-Json runs_as_json(const StudyPlan& plan, const std::vector<RunRow>& runs) {
+Json runs_as_json(const StudyPlan& plan, const std::vector<batch::RunRow>& runs) {
   Json rows = Json::array();
   const std::vector<StudyNumber> numbers = study_numbers(plan);
-  for (const RunRow& run : runs) {
+  for (const batch::RunRow& run : runs) {
     Json row = row_of(run, {{"setting", plan.choices.choices[run.run->point].name}});
     for (std::size_t n = 0; n < numbers.size(); ++n) {
       const std::optional<Estimate> value = run.numbers ? run.numbers->values[n] : std::nullopt;
-      row[numbers[n].column] = value ? or_null(value->value) : Json(nullptr);
+      row[numbers[n].column] = value ? quantities::or_null(value->value) : Json(nullptr);
     }
     rows.push_back(row);
   }
@@ -209,7 +212,7 @@ Json runs_as_json(const StudyPlan& plan, const std::vector<RunRow>& runs) {
 
 Json means_as_json(const StudyMeans& means) {
   Json rows = Json::array();
-  const std::vector<Scatter>& reference = means.settings[means.reference].scatter;
+  const std::vector<statistics::Scatter>& reference = means.settings[means.reference].scatter;
   for (const SettingMeans& setting : means.settings) {
     Json row = {{"setting", setting.name},
                 {"runs", setting.finished},
@@ -217,16 +220,16 @@ Json means_as_json(const StudyMeans& means) {
     for (std::size_t n = 0; n < means.numbers.size(); ++n) {
       const std::string& column = means.numbers[n].column;
       const double percent = 100.0 / std::fabs(reference[n].mean);
-      row[column] = or_null(setting.scatter[n].mean);
-      row[column + "_bound"] = or_null(mean_bound(setting.scatter[n]));
+      row[column] = quantities::or_null(setting.scatter[n].mean);
+      row[column + "_bound"] = quantities::or_null(mean_bound(setting.scatter[n]));
       if (!means.numbers[n].compared)
         continue;
-      row[column + "_difference_percent"] = or_null(percent * setting.from_reference[n].difference);
-      row[column + "_difference_bound_percent"] = or_null(percent * setting.from_reference[n].bound);
+      row[column + "_difference_percent"] = quantities::or_null(percent * setting.from_reference[n].difference);
+      row[column + "_difference_bound_percent"] = quantities::or_null(percent * setting.from_reference[n].bound);
     }
     rows.push_back(row);
   }
   return rows;
 }
 
-} // namespace keeler
+} // namespace keeler::study

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::study {
 
 struct FinishedRun; ///< the data read from a run
 
@@ -34,13 +34,14 @@ std::size_t number_at(const std::string& column);
 
 /// Measures the finished runs: values without errors, in the order of study_numbers(plan). Unfinished runs count as
 /// failed. The rows refer to `runs`.
-std::vector<RunRow> measure_runs(const StudyPlan& plan, const std::vector<PlannedRun>& runs, const RunFolders& folders);
+std::vector<batch::RunRow> measure_runs(const StudyPlan& plan, const std::vector<batch::PlannedRun>& runs,
+                                        const batch::RunFolders& folders);
 
 /// A setting: its numbers over the seeds, in the order of StudyMeans::numbers, and their differences from the
 /// reference.
-struct SettingMeans : PointRow {
+struct SettingMeans : batch::PointRow {
   std::string name;
-  std::vector<MeanDifference> from_reference; ///< known() is false if not compared, and for the reference
+  std::vector<statistics::MeanDifference> from_reference; ///< known() is false if not compared, and for the reference
 };
 
 struct StudyMeans {
@@ -51,11 +52,11 @@ struct StudyMeans {
 
 /// Computes means and differences. Without choices.reference the setting with the smallest force error is the
 /// reference. Precondition: there is at least one choice; the values of a run are in the order of `numbers`.
-StudyMeans means_of(const StudyChoices& choices, const std::vector<RunRow>& runs,
+StudyMeans means_of(const StudyChoices& choices, const std::vector<batch::RunRow>& runs,
                     const std::vector<StudyNumber>& numbers = study_numbers());
 
 /// Return the rows as objects keyed by column; unknown values are null.
-Json runs_as_json(const StudyPlan& plan, const std::vector<RunRow>& runs);
+Json runs_as_json(const StudyPlan& plan, const std::vector<batch::RunRow>& runs);
 Json means_as_json(const StudyMeans& means);
 
-} // namespace keeler
+} // namespace keeler::study

@@ -9,7 +9,7 @@
 #include <cassert>
 #include <filesystem>
 
-namespace keeler {
+namespace keeler::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -41,8 +41,8 @@ std::string last_snapshot(const fs::path& folder) {
   return *std::max_element(files.begin(), files.end());
 }
 
-PlannedRun setting_run(const StudyPlan& plan, std::size_t choice, std::size_t k,
-                       const std::optional<std::string>& from) {
+batch::PlannedRun setting_run(const StudyPlan& plan, std::size_t choice, std::size_t k,
+                              const std::optional<std::string>& from) {
   assert(choice < plan.choices.choices.size() && k < plan.seeds);
   const std::uint64_t seed = plan.scene.particles.seed + k;
   std::vector<std::string> overrides = plan.choices.choices[choice].overrides;
@@ -98,7 +98,7 @@ StudyPlan plan_study(const SceneStudySettings& settings) {
                                  settings.scene));
   plan.choices = choices_of(settings, plan.scene);
   plan.quick = settings.quick;
-  plan.quantities = RunQuantities(settings.quantities);
+  plan.quantities = batch::RunQuantities(settings.quantities);
   plan.seeds = settings.seeds.value_or(settings.quick ? 2 : 3);
   plan.grow_orbits = settings.grow_orbits.value_or(settings.quick ? 1.0 : plan.scene.gravity ? 6.0 : 10.0);
   plan.orbits = settings.orbits.value_or(settings.quick ? 2.0 : 6.0);
@@ -112,8 +112,8 @@ StudyPlan plan_study(const SceneStudySettings& settings) {
   return plan;
 }
 
-std::vector<PlannedRun> growth_runs(const StudyPlan& plan) {
-  std::vector<PlannedRun> runs;
+std::vector<batch::PlannedRun> growth_runs(const StudyPlan& plan) {
+  std::vector<batch::PlannedRun> runs;
   for (std::size_t k = 0; has_common_start(plan.kind) && k < plan.seeds; ++k) {
     const std::uint64_t seed = plan.scene.particles.seed + k;
     runs.push_back({growth_name(plan, k), 0, seed,
@@ -123,8 +123,8 @@ std::vector<PlannedRun> growth_runs(const StudyPlan& plan) {
   return runs;
 }
 
-std::vector<PlannedRun> setting_runs(const StudyPlan& plan, const RunFolders& folders) {
-  std::vector<PlannedRun> runs;
+std::vector<batch::PlannedRun> setting_runs(const StudyPlan& plan, const batch::RunFolders& folders) {
+  std::vector<batch::PlannedRun> runs;
   for (std::size_t k = 0; k < plan.seeds; ++k) {
     std::optional<std::string> from;
     if (has_common_start(plan.kind))
@@ -135,4 +135,4 @@ std::vector<PlannedRun> setting_runs(const StudyPlan& plan, const RunFolders& fo
   return runs;
 }
 
-} // namespace keeler
+} // namespace keeler::study

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::study {
 
 /// A study's validated settings, with all defaults filled in.
 struct StudyPlan {
@@ -22,7 +22,7 @@ struct StudyPlan {
   bool quick = false;
   std::size_t seeds = 3;
   double grow_orbits = 0.0, orbits = 0.0;
-  RunQuantities quantities; ///< measured in each run
+  batch::RunQuantities quantities; ///< measured in each run
 
   /// Returns the orbit at which measuring begins: a quarter of `orbits`, at least one orbit, is left out, and without a
   /// common state also `grow_orbits`.
@@ -35,10 +35,10 @@ struct StudyPlan {
 StudyPlan plan_study(const SceneStudySettings& settings);
 
 /// Returns one run per seed that evolves the common state; none if the settings have no common state.
-std::vector<PlannedRun> growth_runs(const StudyPlan& plan);
+std::vector<batch::PlannedRun> growth_runs(const StudyPlan& plan);
 
 /// Returns the runs of each setting with each seed, from the common states. PlannedRun::point is the setting's index.
 /// Precondition: the runs of growth_runs() are finished in `folders`.
-std::vector<PlannedRun> setting_runs(const StudyPlan& plan, const RunFolders& folders);
+std::vector<batch::PlannedRun> setting_runs(const StudyPlan& plan, const batch::RunFolders& folders);
 
-} // namespace keeler
+} // namespace keeler::study

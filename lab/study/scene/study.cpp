@@ -13,7 +13,7 @@
 
 #include <algorithm>
 
-namespace keeler {
+namespace keeler::study {
 namespace {
 
 // Returns the options that identify a study: a folder with others cannot continue. The scene is compared separately,
@@ -32,15 +32,16 @@ Json options_of(const StudyPlan& plan) {
 void report_warnings(const StudyPlan& plan, const SceneStudySettings& settings) {
   for (const std::string& text : plan.scene.notices)
     settings.notice("note: " + text);
-  for (const std::string& text : warnings(plan.scene))
+  for (const std::string& text : advice::warnings(plan.scene))
     settings.notice("note: " + text);
 }
 
 // Carries out the runs of one stage; returns false after a stop request. `watch` runs since the start of the study.
-bool carry_out(const std::vector<PlannedRun>& runs, const std::string& stage, const RunFolders& folders, Claims& claims,
-               const Stopwatch& watch, const SceneStudySettings& settings, const RunRequests& requests) {
+bool carry_out(const std::vector<batch::PlannedRun>& runs, const std::string& stage, const batch::RunFolders& folders,
+               batch::Claims& claims, const Stopwatch& watch, const SceneStudySettings& settings,
+               const runs::RunRequests& requests) {
   folders.refuse_changed(runs, settings.scene + ":1:1");
-  BatchSettings work = settings;
+  batch::BatchSettings work = settings;
   work.progress = [&](Progress progress) {
     progress.what = stage + ": " + progress.what;
     progress.elapsed_s = watch.elapsed();
@@ -50,8 +51,8 @@ bool carry_out(const std::vector<PlannedRun>& runs, const std::string& stage, co
   return !requests.stop;
 }
 
-void require_states(const std::vector<PlannedRun>& runs, const RunFolders& folders) {
-  for (const PlannedRun& run : runs)
+void require_states(const std::vector<batch::PlannedRun>& runs, const batch::RunFolders& folders) {
+  for (const batch::PlannedRun& run : runs)
     if (const std::optional<std::string> reason = folders.failure_of(run.name))
       throw Error(
           ExitCode::run_time,
@@ -59,9 +60,10 @@ void require_states(const std::vector<PlannedRun>& runs, const RunFolders& folde
                       run.seed, *reason));
 }
 
-BatchResult write_results(const StudyPlan& plan, const std::vector<PlannedRun>& runs, const RunFolders& folders,
-                          const std::map<std::string, std::string>& made, const SceneStudySettings& settings) {
-  const std::vector<RunRow> measured = measure_runs(plan, runs, folders);
+batch::BatchResult write_results(const StudyPlan& plan, const std::vector<batch::PlannedRun>& runs,
+                                 const batch::RunFolders& folders, const std::map<std::string, std::string>& made,
+                                 const SceneStudySettings& settings) {
+  const std::vector<batch::RunRow> measured = measure_runs(plan, runs, folders);
   const StudyMeans means = means_of(plan.choices, measured, study_numbers(plan));
   write_study_tables(plan, measured, means, folders.path());
   const auto draw = [&] {
@@ -76,29 +78,29 @@ BatchResult write_results(const StudyPlan& plan, const std::vector<PlannedRun>& 
 
 } // namespace
 
-BatchResult study_scene(const SceneStudySettings& settings, const RunRequests& requests) {
+batch::BatchResult study_scene(const SceneStudySettings& settings, const runs::RunRequests& requests) {
   const StudyPlan plan = plan_study(settings);
   std::map<std::string, std::string> made = study_provenance(settings.arguments);
   made["scene"] = settings.scene;
   const Json begun = open_study_folder(settings.folder, options_of(plan), made);
   for (auto& [key, value] : made)
     value = begun.value(key, value);
-  const FolderLock lock(settings.folder);
-  const RunFolders folders(settings.folder);
+  const runs::FolderLock lock(settings.folder);
+  const batch::RunFolders folders(settings.folder);
   folders.make();
-  Claims claims(folders.claims());
+  batch::Claims claims(folders.claims());
   report_warnings(plan, settings);
   double elapsed = 0.0;
   const Stopwatch watch(elapsed);
 
-  const std::vector<PlannedRun> growth = growth_runs(plan);
+  const std::vector<batch::PlannedRun> growth = growth_runs(plan);
   if (!growth.empty() && !carry_out(growth, "states", folders, claims, watch, settings, requests))
     return {.stopped = true};
   require_states(growth, folders);
-  const std::vector<PlannedRun> runs = setting_runs(plan, folders);
+  const std::vector<batch::PlannedRun> runs = setting_runs(plan, folders);
   if (!carry_out(runs, "settings", folders, claims, watch, settings, requests))
     return {.stopped = true};
   return write_results(plan, runs, folders, made, settings);
 }
 
-} // namespace keeler
+} // namespace keeler::study

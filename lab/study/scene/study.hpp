@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::study {
 
 /// The setting that a study changes.
 enum class SceneStudyKind {
@@ -26,7 +26,7 @@ enum class SceneStudyKind {
 };
 
 /// Each run is on one thread.
-struct SceneStudySettings : BatchSettings {
+struct SceneStudySettings : batch::BatchSettings {
   SceneStudyKind kind = SceneStudyKind::step;
   std::string scene;                  ///< path of the scene file
   std::vector<std::string> overrides; ///< "KEY=VALUE", applied to the scene
@@ -39,6 +39,6 @@ struct SceneStudySettings : BatchSettings {
 
 /// Carries out the missing runs and writes tables, figure and report. Throws UsageError when the scene has no setting
 /// of this kind or the folder holds another study, Error when a common state could not be evolved, and IoError.
-BatchResult study_scene(const SceneStudySettings& settings, const RunRequests& requests);
+batch::BatchResult study_scene(const SceneStudySettings& settings, const runs::RunRequests& requests);
 
-} // namespace keeler
+} // namespace keeler::study

@@ -9,7 +9,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::study {
 namespace {
 
 double cost_of(const StudyMeans& means, std::size_t setting) {
@@ -53,7 +53,7 @@ std::string refused_words(const StudyMeans& means, std::size_t chosen) {
 std::string chance_words(const StudyMeans& means) {
   int compared = 0, beyond = 0;
   for (const SettingMeans& setting : means.settings)
-    for (const MeanDifference& difference : setting.from_reference)
+    for (const statistics::MeanDifference& difference : setting.from_reference)
       if (difference.known()) {
         ++compared;
         beyond += difference.within() ? 0 : 1;
@@ -77,7 +77,7 @@ SettingVerdict verdict_on(const StudyMeans& means, std::size_t setting) {
   assert(setting < means.settings.size() && means.settings[setting].from_reference.size() == means.numbers.size());
   SettingVerdict verdict;
   for (std::size_t n = 0; n < means.numbers.size(); ++n) {
-    const MeanDifference& difference = means.settings[setting].from_reference[n];
+    const statistics::MeanDifference& difference = means.settings[setting].from_reference[n];
     if (!difference.known())
       continue;
     verdict.compared = true;
@@ -127,7 +127,7 @@ std::string sensitivity_text(const StudyMeans& means) {
   for (std::size_t n = 0; n < means.numbers.size(); ++n) {
     double largest = 0.0;
     for (const SettingMeans& setting : means.settings)
-      if (const MeanDifference& difference = setting.from_reference[n]; difference.known())
+      if (const statistics::MeanDifference& difference = setting.from_reference[n]; difference.known())
         largest = std::max(largest, difference.bound / std::fabs(reference_mean(means, n)));
     if (largest > 0.0)
       list += fmt::format("{}{} {:.1f} %", list.empty() ? "" : ", ", means.numbers[n].title, 100.0 * largest);
@@ -139,4 +139,4 @@ std::string sensitivity_text(const StudyMeans& means) {
                    list + ". Agreement within the scatter is not equality.";
 }
 
-} // namespace keeler
+} // namespace keeler::study

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace keeler {
+namespace keeler::study {
 
 /// Tolerated relative difference of the loss over stress (1 in a steady state) from the reference.
 inline constexpr double balance_tolerance = 0.02;
@@ -37,4 +37,4 @@ std::string verdict_text(const StudyMeans& means);
 /// none is known.
 std::string sensitivity_text(const StudyMeans& means);
 
-} // namespace keeler
+} // namespace keeler::study

@@ -9,7 +9,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::collision {
 
 /// Calls visit(j, image of j) for every other particle that i may touch from `start` (rad after the epoch) on. Throws
 /// InvariantError if one of them may come from too far away (reach.hpp), and Interrupted.
@@ -41,4 +41,4 @@ void visit_all_images(const SearchContext& step, std::size_t i, double start, co
   }
 }
 
-} // namespace keeler
+} // namespace keeler::collision

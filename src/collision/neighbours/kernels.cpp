@@ -2,7 +2,7 @@
 
 #include "ablation.hpp"
 
-namespace keeler {
+namespace keeler::collision {
 
 namespace kernels_portable {
 extern const Kernels table;
@@ -47,4 +47,4 @@ Kernels kernels([[maybe_unused]] InstructionSet set) {
   return kernels_portable::table;
 }
 
-} // namespace keeler
+} // namespace keeler::collision

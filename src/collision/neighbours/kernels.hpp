@@ -8,7 +8,7 @@
 
 #include <cstddef>
 
-namespace keeler {
+namespace keeler::collision {
 
 inline constexpr std::size_t kernel_padding = 16; ///< lines, indices and pairs behind the last one must be readable
 
@@ -57,4 +57,4 @@ struct Kernels {
 /// Returns the kernels for an instruction set that this processor supports.
 Kernels kernels(InstructionSet set);
 
-} // namespace keeler
+} // namespace keeler::collision

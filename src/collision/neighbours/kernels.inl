@@ -11,7 +11,7 @@
 // Only plain arrays and these vectors: no inline function of another file may be compiled here, since the linker could
 // use it on all processors. Everything here has internal linkage except `table`.
 
-namespace keeler::KEELER_KERNEL_SPACE {
+namespace keeler::collision::KEELER_KERNEL_SPACE {
 namespace {
 
 inline Floats floats(const Integers& values) {
@@ -197,4 +197,4 @@ std::size_t follow(const double* bodies, const Line* references, const FollowFra
 extern const Kernels table;
 const Kernels table = {sweep, sweep_group, filter, follow};
 
-} // namespace keeler::KEELER_KERNEL_SPACE
+} // namespace keeler::collision::KEELER_KERNEL_SPACE

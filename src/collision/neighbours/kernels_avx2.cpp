@@ -5,7 +5,7 @@
 
 #define KEELER_KERNEL_SPACE kernels_avx2
 
-namespace keeler::KEELER_KERNEL_SPACE {
+namespace keeler::collision::KEELER_KERNEL_SPACE {
 namespace {
 
 constexpr std::size_t lanes = 8;
@@ -106,6 +106,6 @@ inline void store_lines(Line* lines, const Words& x, const Words& y, const Singl
 }
 
 } // namespace
-} // namespace keeler::KEELER_KERNEL_SPACE
+} // namespace keeler::collision::KEELER_KERNEL_SPACE
 
 #include "kernels.inl"

@@ -9,7 +9,7 @@
 
 #include <cstdint>
 
-namespace keeler {
+namespace keeler::collision {
 
 /// The side of the box in the units of Line::x and Line::y.
 inline constexpr double full_turn = 4294967296.0; // 2³²
@@ -40,4 +40,4 @@ struct LinePair {
   std::uint32_t first, second;
 };
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <numeric>
 
-namespace keeler {
+namespace keeler::collision {
 namespace {
 
 constexpr std::size_t lines_per_block = 4096;
@@ -277,4 +277,4 @@ std::size_t LineCells::bytes() const {
          lines_.capacity() * sizeof(Line);
 }
 
-} // namespace keeler
+} // namespace keeler::collision

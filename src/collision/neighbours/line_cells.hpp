@@ -20,7 +20,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 class LineCells {
 public:
@@ -212,4 +212,4 @@ std::uint64_t LineCells::sweep_pairs(std::size_t begin, std::size_t end, const L
   return tested;
 }
 
-} // namespace keeler
+} // namespace keeler::collision

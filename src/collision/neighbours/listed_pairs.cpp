@@ -9,7 +9,7 @@
 #include <cassert>
 #include <numeric>
 
-namespace keeler {
+namespace keeler::collision {
 namespace {
 
 constexpr std::size_t slots_per_block = 1024;
@@ -134,4 +134,4 @@ std::size_t ListedPairs::bytes() const {
   return total;
 }
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 using PaddedPairs = std::vector<LinePair>; ///< kernel_padding more than it holds, or empty
 
@@ -74,4 +74,4 @@ private:
   MarkedSet renewed_;
 };
 
-} // namespace keeler
+} // namespace keeler::collision

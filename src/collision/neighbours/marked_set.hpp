@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 class MarkedSet {
 public:
@@ -46,4 +46,4 @@ private:
   std::vector<std::uint8_t> marks_;
 };
 
-} // namespace keeler
+} // namespace keeler::collision

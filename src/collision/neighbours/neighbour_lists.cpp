@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-namespace keeler {
+namespace keeler::collision {
 
 bool NeighbourLists::begin(const Particles& particles, const ShearingBox& box, double offset, bool undisturbed) {
   assert(box.size_x > 0.0 && box.size_y > 0.0);
@@ -186,4 +186,4 @@ bool NeighbourLists::sound() const {
          lists_.sound() && pairs_.sound(lists_) && interval_.sound(lists_.size());
 }
 
-} // namespace keeler
+} // namespace keeler::collision

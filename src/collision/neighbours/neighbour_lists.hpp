@@ -29,7 +29,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 /// What the lists have cost since the run began.
 struct ListCounts {
@@ -203,4 +203,4 @@ void NeighbourLists::visit_partners(std::size_t i, double start, double end, std
   }
 }
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -7,7 +7,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::collision {
 namespace {
 
 constexpr double single_precision = 4e-6; // relative bound on the rounding of a line
@@ -109,4 +109,4 @@ PathOffset offset_from(const Line& reference, const Line& line, const FollowFram
   return {off, rate};
 }
 
-} // namespace keeler
+} // namespace keeler::collision

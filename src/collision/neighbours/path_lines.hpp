@@ -6,7 +6,7 @@
 #include "kernels.hpp"
 #include "search_context.hpp"
 
-namespace keeler {
+namespace keeler::collision {
 
 /// Bound on the rounding of positions in box fractions, m.
 inline double position_rounding(const ShearingBox& box) {
@@ -40,4 +40,4 @@ struct PathOffset {
 };
 PathOffset offset_from(const Line& reference, const Line& line, const FollowFrame& follow, const LineFrame& frame);
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -6,7 +6,7 @@
 #include <cassert>
 #include <numeric>
 
-namespace keeler {
+namespace keeler::collision {
 
 void PruningInterval::look_ahead(const SearchContext& step) {
   middle_ = step.instant(-steps_.since_middle(step.step));
@@ -100,4 +100,4 @@ bool PruningInterval::sound(std::size_t particles) const {
          std::all_of(escaped_.begin(), escaped_.end(), [&](std::uint32_t i) { return i < particles; });
 }
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 class PruningInterval {
 public:
@@ -100,4 +100,4 @@ private:
   std::vector<std::uint8_t> escapes_later_; // by particle: hit in this step, may leave its skin in a later one
 };
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-namespace keeler {
+namespace keeler::collision {
 
 void RebuildPolicy::begin_step(bool undisturbed) {
   if (!undisturbed)
@@ -75,4 +75,4 @@ void RebuildPolicy::hit(std::uint64_t entries_of_dirty) {
   cost_ += 5.0 * static_cast<double>(entries_of_dirty);
 }
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace keeler {
+namespace keeler::collision {
 
 class RebuildPolicy {
 public:
@@ -50,4 +50,4 @@ private:
   std::size_t renewed_ = 0; // lists rebuilt one by one
 };
 
-} // namespace keeler
+} // namespace keeler::collision

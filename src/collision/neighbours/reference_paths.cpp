@@ -6,7 +6,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace keeler {
+namespace keeler::collision {
 namespace {
 
 constexpr double skin_fraction = 0.4; // of the mean radius
@@ -94,4 +94,4 @@ bool ReferencePaths::sound(std::size_t particles) const {
   return true;
 }
 
-} // namespace keeler
+} // namespace keeler::collision

@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 class ReferencePaths {
 public:
@@ -59,4 +59,4 @@ private:
   LineCells cells_; // hold the lines, with rounding in their size
 };
 
-} // namespace keeler
+} // namespace keeler::collision

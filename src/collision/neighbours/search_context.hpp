@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace keeler {
+namespace keeler::collision {
 
 /// A time after the epoch (rad) and the shear offset of that time (m).
 struct Instant {
@@ -24,9 +24,9 @@ struct SearchContext {
   const Particles& particles;
   Frequencies frequencies;
   ShearingBox box;
-  double offset;         ///< shear offset at the epoch, the middle of the step, m
-  double step;           ///< length of the step, rad
-  StraightLineTest test; ///< in double precision, for this step
+  double offset;                  ///< shear offset at the epoch, the middle of the step, m
+  double step;                    ///< length of the step, rad
+  finders::StraightLineTest test; ///< in double precision, for this step
 
   Instant instant(double after) const {
     return {after, std::fmod(offset + box.shear * box.size_x * after, box.size_y)};
@@ -48,4 +48,4 @@ struct SearchContext {
   }
 };
 
-} // namespace keeler
+} // namespace keeler::collision

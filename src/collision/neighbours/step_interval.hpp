@@ -5,7 +5,7 @@
 
 #include <cassert>
 
-namespace keeler {
+namespace keeler::collision {
 
 struct StepInterval {
   int age = 0;    ///< number of the present step, from 0 on
@@ -30,4 +30,4 @@ inline LineSpan widened(double begin, double end, double half) {
   return {static_cast<float>(begin - 1e-6 * half), static_cast<float>(end + 1e-6 * half)};
 }
 
-} // namespace keeler
+} // namespace keeler::collision

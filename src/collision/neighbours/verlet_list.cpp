@@ -6,7 +6,7 @@
 
 #include <utility>
 
-namespace keeler {
+namespace keeler::collision {
 
 void VerletList::check_length(std::uint64_t entries) const {
   if (entries > std::uint64_t{1} << 31)
@@ -96,4 +96,4 @@ bool VerletList::sound() const {
   return forth == back && std::adjacent_find(forth.begin(), forth.end()) == forth.end();
 }
 
-} // namespace keeler
+} // namespace keeler::collision

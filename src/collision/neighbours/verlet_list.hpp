@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-namespace keeler {
+namespace keeler::collision {
 
 class VerletList {
 public:
@@ -80,4 +80,4 @@ template<class Particle> void VerletList::lay_out(std::span<const std::uint32_t>
   entries_.assign(begin + kernel_padding, 0);
 }
 
-} // namespace keeler
+} // namespace keeler::collision

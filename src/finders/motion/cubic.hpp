@@ -10,7 +10,7 @@
 #include <cassert>
 #include <optional>
 
-namespace keeler {
+namespace keeler::finders {
 
 /// A vector cubic in the time u since the step's start.
 struct Cubic {
@@ -90,4 +90,4 @@ private:
   Cubic cubic_;
 };
 
-} // namespace keeler
+} // namespace keeler::finders

@@ -8,14 +8,14 @@
 
 #include <optional>
 
-namespace keeler {
+namespace keeler::finders {
 
 /// Returns a rotation computed from scratch: two sines and two cosines.
 inline Rotation own_rotation(const Frequencies& f, double time) {
   Rotation r;
   r.after = time;
-  sine_cosine(f.kappa * time, r.sin_e, r.cos_e);
-  sine_cosine(f.nu * time, r.sin_i, r.cos_i);
+  hill::sine_cosine(f.kappa * time, r.sin_e, r.cos_e);
+  hill::sine_cosine(f.nu * time, r.sin_i, r.cos_i);
   return r;
 }
 
@@ -58,4 +58,4 @@ private:
   double begin_;
 };
 
-} // namespace keeler
+} // namespace keeler::finders

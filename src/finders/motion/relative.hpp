@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace keeler {
+namespace keeler::finders {
 
 class RelativeMotion {
 public:
@@ -60,4 +60,4 @@ private:
   double speed_, acceleration_, scale_;
 };
 
-} // namespace keeler
+} // namespace keeler::finders

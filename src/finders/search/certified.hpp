@@ -19,7 +19,7 @@
 #include <cmath>
 #include <concepts>
 
-namespace keeler {
+namespace keeler::finders {
 
 /// A motion with bounds on its speed and acceleration at all times, and on the rounding of |d|² − R² and of 2 d·v.
 template<class Motion>
@@ -111,4 +111,4 @@ template<BoundedMotionModel Motion> FinderResult CertifiedSearch::find(const Mot
   }
 }
 
-} // namespace keeler
+} // namespace keeler::finders

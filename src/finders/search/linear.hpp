@@ -11,7 +11,7 @@
 #include <keeler/finders/finder.hpp>
 #include <keeler/finders/search/published.hpp>
 
-namespace keeler {
+namespace keeler::finders {
 
 /// The published code differs slightly between the two motions with this search.
 enum class LinearForm { full, cubic };
@@ -80,4 +80,4 @@ FinderResult LinearSearch<form>::find(Motion& motion, const Pair& pair) {
   return leave(result, PublishedExit::iterations);
 }
 
-} // namespace keeler
+} // namespace keeler::finders

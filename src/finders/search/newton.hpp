@@ -10,7 +10,7 @@
 #include <keeler/finders/finder.hpp>
 #include <keeler/finders/search/published.hpp>
 
-namespace keeler {
+namespace keeler::finders {
 
 enum class NewtonForm { original, damped, as_coded };
 
@@ -98,4 +98,4 @@ bool NewtonSearch<form>::back_to_approach(Motion& motion, const Pair& pair, doub
   return !(now.closing() > 0.0);
 }
 
-} // namespace keeler
+} // namespace keeler::finders

@@ -13,7 +13,7 @@
 
 #include <cmath>
 
-namespace keeler {
+namespace keeler::finders {
 
 struct Published {
   static constexpr double convergence = 1e-8;  ///< a root has |d² − R²| below this many R²
@@ -115,4 +115,4 @@ inline bool out_of_range(double guess, const Pair& pair, FinderResult& result) {
   return true;
 }
 
-} // namespace keeler
+} // namespace keeler::finders

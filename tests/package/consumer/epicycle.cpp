@@ -14,7 +14,7 @@ double gap_after_one_orbit() {
   keeler::Elements orbit;
   orbit.e_cos = 0.3;
   orbit.i_sin = 0.2;
-  const keeler::State there = keeler::state_at(orbit, kepler, keeler::Rotation(kepler, 0.0));
+  const keeler::State there = keeler::hill::state_at(orbit, kepler, keeler::Rotation(kepler, 0.0));
   keeler::Patch start;
   start.positions = {there.position};
   start.velocities = {there.velocity};

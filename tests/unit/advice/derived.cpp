@@ -12,6 +12,7 @@
 namespace derived_test {
 
 using namespace keeler;
+using namespace keeler::advice;
 using namespace keeler::test;
 
 TEST_CASE("the A-ring example has the numbers of the design") {

@@ -13,6 +13,7 @@
 namespace estimate_test {
 
 using namespace keeler;
+using namespace keeler::advice;
 using namespace keeler::test;
 
 namespace {
@@ -131,7 +132,7 @@ TEST_CASE("a moonlet's area adds few contacts and no levels of cells") {
   Scene scene = with({"particles.count=10001", "box.size=[251, 251]"});
   const RunEstimate grains = estimate_run(scene);
   const double rate = scene_contacts(scene).smooth.fast;
-  scene.particles.sizes = listed_sizes(radii);
+  scene.particles.sizes = particles::listed_sizes(radii);
   check_near(scene_contacts(scene).smooth.fast, 1.5 * rate, 1.15);
   check_near(estimate_run(scene).drift, 2.0 * grains.drift, 1.5);
 }

@@ -9,6 +9,7 @@
 namespace claims_test {
 
 using namespace keeler;
+using namespace keeler::batch;
 using namespace keeler::test;
 
 TEST_CASE("a name is claimed by one at a time, and free again when its claimant lets go or ends") {

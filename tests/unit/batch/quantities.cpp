@@ -11,6 +11,7 @@
 namespace quantities_test {
 
 using namespace keeler;
+using namespace keeler::batch;
 
 TEST_CASE("every number of a batch has a name of its own; docs/formats.md has the table") {
   std::set<std::string> names;
@@ -21,7 +22,7 @@ TEST_CASE("every number of a batch has a name of its own; docs/formats.md has th
     CHECK(names.insert(column.error_name).second);
     table += fmt::format("| `{}` | `{}` | {} |\n", column.name, column.error_name, column.meaning);
   }
-  const std::string page = read_text(KEELER_SOURCE_DIR "/docs/formats.md");
+  const std::string page = files::read_text(KEELER_SOURCE_DIR "/docs/formats.md");
   INFO("docs/formats.md must hold this table:\n" << table);
   CHECK(page.find(table) != page.npos);
 }

@@ -8,6 +8,7 @@
 namespace rows_test {
 
 using namespace keeler;
+using namespace keeler::batch;
 
 namespace {
 

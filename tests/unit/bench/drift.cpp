@@ -5,6 +5,7 @@
 namespace drift_test {
 
 using namespace keeler;
+using namespace keeler::bench;
 
 TEST_CASE("the bench times an equilibrium") {
   DriftBenchSettings settings;

@@ -15,11 +15,12 @@
 namespace gravity_states_test {
 
 using namespace keeler;
+using namespace keeler::bench;
 
 namespace {
 
 std::vector<Vec3> exact(const Patch& patch, const std::vector<std::size_t>& targets, int rings) {
-  return sampled_accelerations(gravity_problem(patch), targets, {rings, true}, choose_instruction_set());
+  return sampled_accelerations(diagnostics::gravity_problem(patch), targets, {rings, true}, choose_instruction_set());
 }
 
 double rms_difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
@@ -54,15 +55,17 @@ TEST_CASE("the clumped state has wakes, and the forces in its tiles equal those 
   PhaseProgress silent({});
   const Patch tile = gravity_state(2400, GravityState::clumped, silent).patch;
   REQUIRE(tile.offset > 1.0); // else the tiling tests little
-  CHECK(largest_overlap(tile).depth < 1e-12);
-  CHECK(find_wakes(mean_autocorrelation(std::span(&tile, 1)), critical_wavelength(tile)).amplitude > 0.1);
+  CHECK(cells::largest_overlap(tile).depth < 1e-12);
+  CHECK(find_wakes(diagnostics::mean_autocorrelation(std::span(&tile, 1)), diagnostics::critical_wavelength(tile))
+            .amplitude > 0.1);
 
-  const std::vector<std::size_t> targets = draw_force_sample(gravity_problem(tile), 150, 20, 5.0).targets;
+  const std::vector<std::size_t> targets =
+      diagnostics::draw_force_sample(diagnostics::gravity_problem(tile), 150, 20, 5.0).targets;
   const std::vector<Vec3> of_tile = exact(tile, targets, 2);
   // measured 8e-10: the fits of the far images
   CHECK(rms_difference(exact(tile, targets, 3), of_tile) < 1e-7);
   for (const auto& [nx, ny] : {std::pair<std::size_t, std::size_t>{2, 2}, {3, 3}, {1, 2}, {3, 2}}) {
-    const Patch large = tiled_patch(tile, nx, ny);
+    const Patch large = initial_conditions::tiled_patch(tile, nx, ny);
     for (const std::size_t copy : {std::size_t{0}, nx * ny - 1}) {
       std::vector<std::size_t> copies;
       for (const std::size_t k : targets)

@@ -13,6 +13,7 @@
 namespace step_test {
 
 using namespace keeler;
+using namespace keeler::bench;
 
 namespace {
 
@@ -40,7 +41,7 @@ struct StoredState {
 
   explicit StoredState(const std::string& text) {
     const Scene scene = parse_scene(text, "test");
-    write_snapshot(file, initial_patch(scene), {scene.resolved, {}});
+    io::write_snapshot(file, initial_patch(scene), {scene.resolved, {}});
   }
 
   StepBenchSettings settings(int repeats) const {

@@ -10,6 +10,7 @@
 namespace grid_test {
 
 using namespace keeler;
+using namespace keeler::cells;
 
 TEST_CASE("a query visits exactly the images inside its window, each once") {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {

@@ -7,6 +7,7 @@
 namespace overlap_test {
 
 using namespace keeler;
+using namespace keeler::cells;
 
 namespace {
 

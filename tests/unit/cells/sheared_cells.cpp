@@ -11,6 +11,7 @@
 namespace sheared_cells_test {
 
 using namespace keeler;
+using namespace keeler::cells;
 
 TEST_CASE("a traversal visits every point of a window of varying height, and no cell twice") {
   RandomStream random(1, RandomPurpose::position, 0);

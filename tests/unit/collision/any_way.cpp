@@ -13,6 +13,7 @@
 namespace any_way_test {
 
 using namespace keeler;
+using namespace keeler::collision;
 using test::Ring;
 using test::Scenario;
 
@@ -185,17 +186,17 @@ end = 1.0
   const int before = threads();
   set_threads(1);
   Simulation first(scene, patch);
-  const SimulationState start = first.state();
+  const simulation::SimulationState start = first.state();
   for (int k = 0; k < steps; ++k)
     first.advance();
   CHECK(first.state().collisions.fast > 500);
   for (const Way& way : ways) {
     set_threads(way.threads);
-    SimulationState state = start;
+    simulation::SimulationState state = start;
     if (way.shuffled) {
       shuffle(state.particles.bodies);
       shuffle(state.particles.ids);
-      for (ForceState& force : state.forces)
+      for (simulation::ForceState& force : state.forces)
         shuffle(force.accelerations);
     }
     Simulation other(scene, state);
@@ -207,7 +208,7 @@ end = 1.0
         again.advance();
         state = again.state();
       }
-    const SimulationState& end = way.keeps_neighbours ? other.state() : state;
+    const simulation::SimulationState& end = way.keeps_neighbours ? other.state() : state;
     CAPTURE(way.threads);
     CAPTURE(way.keeps_neighbours);
     CAPTURE(way.shuffled);

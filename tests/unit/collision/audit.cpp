@@ -13,6 +13,7 @@
 namespace audit_test {
 
 using namespace keeler;
+using namespace keeler::collision;
 using namespace keeler::test;
 
 TEST_CASE("no neighbour is missed: lists or grid, kept or made anew, on one thread or several; no bit changes") {

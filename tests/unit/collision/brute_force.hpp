@@ -16,17 +16,18 @@ namespace keeler::test {
 
 class BruteForce {
 public:
-  BruteForce(const CollisionSettings& settings, const Frequencies& f, double orbital_frequency, double step, int scans)
+  BruteForce(const collision::CollisionSettings& settings, const Frequencies& f, double orbital_frequency, double step,
+             int scans)
       : settings_(settings), f_(f), omega_(orbital_frequency), step_(step), scans_(scans) {}
 
-  std::vector<CollisionRecord> collide(Particles& particles, const ShearingBox& box, double offset) {
+  std::vector<collision::CollisionRecord> collide(Particles& particles, const ShearingBox& box, double offset) {
     particles_ = &particles, box_ = box, offset_ = offset;
     last_.assign(particles.size(), -0.5 * step_);
     pending_.clear();
     for (std::size_t i = 0; i < particles.size(); ++i)
       for (std::size_t j = i + 1; j < particles.size(); ++j)
         look(i, j);
-    std::vector<CollisionRecord> records;
+    std::vector<collision::CollisionRecord> records;
     while (!pending_.empty()) {
       const Key key = pending_.begin()->first;
       const auto [i, j] = pending_.begin()->second;
@@ -116,7 +117,7 @@ private:
     return b;
   }
 
-  CollisionRecord bounce(const Key& key, std::size_t i, std::size_t j) {
+  collision::CollisionRecord bounce(const Key& key, std::size_t i, std::size_t j) {
     const double t = std::get<0>(key);
     const Image image{std::get<3>(key), std::get<4>(key)};
     Body &a = particles_->bodies[i], &b = particles_->bodies[j];
@@ -134,7 +135,7 @@ private:
     return {t, i, j, image, speed, fast};
   }
 
-  CollisionSettings settings_;
+  collision::CollisionSettings settings_;
   Frequencies f_;
   double omega_, step_;
   int scans_;

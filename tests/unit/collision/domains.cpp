@@ -11,6 +11,7 @@
 namespace domains_test {
 
 using namespace keeler;
+using namespace keeler::collision;
 
 TEST_CASE("in each round every position belongs to the one domain whose strip contains it") {
   RandomStream random(1, RandomPurpose::sample, 0);

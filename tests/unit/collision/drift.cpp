@@ -14,6 +14,7 @@
 namespace drift_test {
 
 using namespace keeler;
+using namespace keeler::collision;
 
 namespace {
 
@@ -200,14 +201,14 @@ TEST_CASE("no overlap deeper than rounding after many dense steps") {
   s.step = two_pi * 2e-3;
   Start start = make_start(s, 2);
   DriftPhase drift(settings_of(s), {1.0, 1.0}, omega, s.step);
-  const Rebase rebase({1.0, 1.0}, s.step);
+  const hill::Rebase rebase({1.0, 1.0}, s.step);
   CollisionTally tally;
   for (int step = 0; step < 200; ++step) {
     const double offset = start.box.offset(2 * step + 1, 0.5 * s.step);
     drift.collide(start.particles, start.box, offset, tally);
     const double end_offset = start.box.offset(2 * step + 2, 0.5 * s.step);
     const Patch patch = make_patch(start.particles, start.box, end_offset, {1.0, 1.0}, 0.5 * s.step);
-    CHECK(largest_overlap(patch).depth < 1e-11);
+    CHECK(cells::largest_overlap(patch).depth < 1e-11);
     for (Body& body : start.particles.bodies)
       rebase(body.elements);
   }
@@ -250,7 +251,7 @@ TEST_CASE("a state of perfectly inelastic spheres runs") {
   s.restitution = constant_restitution(0.0);
   Start start = make_start(s, 4);
   DriftPhase drift(settings_of(s), {1.0, 1.0}, omega, s.step);
-  const Rebase rebase({1.0, 1.0}, s.step);
+  const hill::Rebase rebase({1.0, 1.0}, s.step);
   CollisionTally tally;
   for (int step = 0; step < 100; ++step) {
     drift.collide(start.particles, start.box, start.box.offset(2 * step + 1, 0.5 * s.step), tally);

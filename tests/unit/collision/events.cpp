@@ -10,6 +10,7 @@
 namespace events_test {
 
 using namespace keeler;
+using namespace keeler::collision;
 
 namespace {
 

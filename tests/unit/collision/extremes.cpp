@@ -9,6 +9,7 @@
 namespace extremes_test {
 
 using namespace keeler;
+using namespace keeler::collision;
 using test::Ring;
 using test::Scenario;
 using test::Sphere;
@@ -27,7 +28,7 @@ CollisionSettings restitution(double value) {
 std::size_t walk(Ring& ring, int steps, const CollisionSettings& settings = {}) {
   ring.keeps_neighbours = true;
   const std::size_t collisions = Twin(ring, settings).advance(steps);
-  CHECK(largest_overlap(ring.patch()).depth < 1e-13 * (ring.box.size_x + ring.box.size_y + 10.0));
+  CHECK(cells::largest_overlap(ring.patch()).depth < 1e-13 * (ring.box.size_x + ring.box.size_y + 10.0));
   return collisions;
 }
 

@@ -9,6 +9,7 @@
 namespace far_and_fast_test {
 
 using namespace keeler;
+using namespace keeler::collision;
 using test::RandomVectors;
 using test::Ring;
 using test::Sphere;

@@ -11,6 +11,7 @@
 namespace friction_test {
 
 using namespace keeler;
+using namespace keeler::collision;
 
 namespace {
 

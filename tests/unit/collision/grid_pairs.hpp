@@ -17,7 +17,7 @@ namespace keeler::test {
 
 /// Equal spheres of radius 1 at τ = 0.5, with the dispersions of ε = 0.5 in equilibrium (c_x = 2.175, c_z = 1.45 r Ω).
 inline Patch equilibrium_patch(std::size_t count, std::uint64_t seed) {
-  UniformRequest request;
+  initial_conditions::UniformRequest request;
   request.radii.assign(count, 1.0);
   const double side = std::sqrt(static_cast<double>(count) * pi / 0.5);
   request.box = {side, side, request.frequencies.shear(), 0.0};
@@ -28,18 +28,18 @@ inline Patch equilibrium_patch(std::size_t count, std::uint64_t seed) {
 }
 
 /// Asks each finder what the driving one is asked, and compares.
-class AskAll final : public DriftObserver {
+class AskAll final : public collision::DriftObserver {
 public:
   explicit AskAll(bool every_candidate = false) : every_candidate_(every_candidate) {
-    for (const FinderEntry& entry : finder_table())
+    for (const finders::FinderEntry& entry : finders::finder_table())
       asked.push_back({entry.name, entry.make(), {}});
   }
   bool wants_every_candidate() const override { return every_candidate_; }
 
   struct Asked {
     std::string name;
-    std::unique_ptr<Finder> finder;
-    FinderCounts counts;
+    std::unique_ptr<finders::Finder> finder;
+    finders::FinderCounts counts;
     std::uint64_t lost = 0;     ///< contacts that the driving finder found and this one did not
     std::uint64_t invented = 0; ///< the reverse
   };
@@ -50,7 +50,7 @@ public:
     return *std::find_if(asked.begin(), asked.end(), [&](const Asked& a) { return a.name == name; });
   }
 
-  void begins(const DriftStep& step) override {
+  void begins(const finders::DriftStep& step) override {
     end_ = step.end;
     for (Asked& a : asked)
       a.finder->begin(step);
@@ -59,9 +59,9 @@ public:
     for (Asked& a : asked)
       a.finder->changed(particle);
   }
-  void searched(const Query& query, const FinderResult& truth) override {
+  void searched(const finders::Query& query, const finders::FinderResult& truth) override {
     for (Asked& a : asked) {
-      const FinderResult result = a.finder->find(query);
+      const finders::FinderResult result = a.finder->find(query);
       a.counts.add(result);
       in_span &= !result.contact() || (result.time >= query.start && result.time < end_);
       a.lost += truth.contact() && !result.contact();

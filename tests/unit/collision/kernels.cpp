@@ -16,6 +16,7 @@
 namespace kernels_test {
 
 using namespace keeler;
+using namespace keeler::collision;
 
 namespace {
 

@@ -19,6 +19,7 @@
 namespace kernels_follow_test {
 
 using namespace keeler;
+using namespace keeler::collision;
 
 namespace {
 

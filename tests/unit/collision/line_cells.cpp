@@ -15,6 +15,7 @@
 namespace line_cells_test {
 
 using namespace keeler;
+using namespace keeler::collision;
 
 namespace {
 

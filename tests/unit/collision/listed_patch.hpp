@@ -47,7 +47,7 @@ struct ListedPatch {
   ShearingBox box;
   std::int64_t steps = 0;
   bool undisturbed = false;
-  NeighbourLists lists;
+  collision::NeighbourLists lists;
   std::vector<std::uint32_t> buffer;
 
   ListedPatch(const Setting& s, std::uint64_t seed)
@@ -79,7 +79,7 @@ struct ListedPatch {
 
   void move_on() {
     ++steps;
-    const Rebase rebase(setting.frequencies, setting.step);
+    const hill::Rebase rebase(setting.frequencies, setting.step);
     for (Body& body : particles.bodies) {
       rebase(body.elements);
       into_cell(body);
@@ -114,7 +114,7 @@ struct ListedPatch {
   // Calls visit(image) for each image of j through which the pair may touch from `start` on, by the exact test.
   template<class Visit>
   void visit_images(std::size_t i, std::size_t j, double start, int far, const Visit& visit) const {
-    const StraightLineTest test{setting.frequencies, half(), half(), 1e-13 * (box.size_x + box.size_y)};
+    const finders::StraightLineTest test{setting.frequencies, half(), half(), 1e-13 * (box.size_x + box.size_y)};
     const Body &a = particles.bodies[i], &b = particles.bodies[j];
     const Image nearest = lists.nearest_image(a, b);
     for (int nx = -far; nx <= far; ++nx)
@@ -135,7 +135,7 @@ struct ListedPatch {
         visit_images(i, j, -half(), far, [&](const Image& image) { all.push_back(pair_of(i, j, image)); });
     return all;
   }
-  std::vector<FoundPair> visited(const NeighbourLists& by) const {
+  std::vector<FoundPair> visited(const collision::NeighbourLists& by) const {
     std::vector<FoundPair> all;
     for (std::size_t block = 0; block < by.blocks(); ++block)
       by.visit_block(block,
@@ -169,7 +169,7 @@ inline bool once_each(const std::vector<FoundPair>& sorted) {
 }
 
 // True if lists are symmetric, without duplicates, and no particle is on its own list.
-inline bool symmetric(const NeighbourLists& lists, std::size_t count) {
+inline bool symmetric(const collision::NeighbourLists& lists, std::size_t count) {
   std::vector<std::pair<std::size_t, std::size_t>> forth, back;
   for (std::size_t i = 0; i < count; ++i)
     for (const std::uint32_t j : lists.list(i)) {

@@ -13,7 +13,7 @@ TEST_CASE("10^5 orbits without drift of phase or mean X") {
   const Frequencies f{0.99458, 1.00539};
   const double step = two_pi * 1e-2;
   constexpr int steps = 10'000'000;
-  const Rebase rebase(f, step);
+  const hill::Rebase rebase(f, step);
   Elements el{0.0, 0.0, 2.0, 0.0, 0.0, 2.0};
   for (int k = 0; k < steps; ++k)
     rebase(el);

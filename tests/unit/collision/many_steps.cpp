@@ -13,6 +13,7 @@
 namespace many_steps_test {
 
 using namespace keeler;
+using namespace keeler::collision;
 using test::Ring;
 using test::Scenario;
 using test::Twin;
@@ -285,7 +286,7 @@ end = 1.0
     simulation.drift().observe(&recorder);
     std::size_t collisions = 0;
     for (int k = 0; k < 90; ++k) {
-      const SimulationState& state = simulation.state();
+      const simulation::SimulationState& state = simulation.state();
       Particles copy = state.particles;
       const auto half_kick = [&] {
         for (std::size_t i = 0; i < copy.size(); ++i)
@@ -301,7 +302,7 @@ end = 1.0
       CHECK(recorder.records.size() == expected.size());
       REQUIRE(test::same_records(recorder.records, expected) == expected.size());
       test::in_order_of(copy, state.particles);
-      const Rebase rebase(f, step);
+      const hill::Rebase rebase(f, step);
       for (Body& body : copy.bodies) {
         Elements& el = body.elements;
         rebase(el);

@@ -97,7 +97,7 @@ solver = ")") + solver + "\"\nkick_every = 1\n[time]\nstep = 1e-3\nend = 1.0\n",
       Simulation simulation(scene, test::patch_of(spheres, 200.0, 200.0));
       for (int k = 0; k < 5; ++k)
         simulation.advance();
-      SimulationState state = simulation.state();
+      simulation::SimulationState state = simulation.state();
       state.forces[0].accelerations[3].y() = bad;
       Simulation again(scene, state);
       REQUIRE_THROWS_AS(again.advance(), InvariantError);

@@ -10,6 +10,7 @@
 namespace optimistic_loop_test {
 
 using namespace keeler;
+using namespace keeler::collision;
 
 namespace {
 

@@ -18,12 +18,12 @@ namespace keeler::test {
 
 class PlainDrift {
 public:
-  PlainDrift(const CollisionSettings& settings, const Frequencies& f, double orbital_frequency, double step)
+  PlainDrift(const collision::CollisionSettings& settings, const Frequencies& f, double orbital_frequency, double step)
       : settings_(settings), f_(f), omega_(orbital_frequency), step_(step), at_hand_(f, -0.5 * step, 0.5 * step, 0.0),
-        finder_(make_finder("certified")) {}
+        finder_(finders::make_finder("certified")) {}
 
-  std::vector<CollisionRecord> collide(Particles& particles, const ShearingBox& box, double offset,
-                                       CollisionTally& tally) {
+  std::vector<collision::CollisionRecord> collide(Particles& particles, const ShearingBox& box, double offset,
+                                                  CollisionTally& tally) {
     particles_ = &particles, box_ = box, offset_ = offset;
     lost_ = flux_ = gain_ = {};
     begin();
@@ -32,7 +32,7 @@ public:
     for (std::size_t i = 0; i < particles.size(); ++i)
       for (std::size_t j = i + 1; j < particles.size(); ++j)
         look(i, j);
-    std::vector<CollisionRecord> records;
+    std::vector<collision::CollisionRecord> records;
     while (!pending_.empty()) {
       const auto [key, places] = *pending_.begin();
       pending_.erase(pending_.begin());
@@ -62,11 +62,11 @@ private:
 
   // These two functions alone depend on the interface of finders.
   void begin() {
-    at_hand_ = DriftStep(f_, -0.5 * step_, 0.5 * step_, box_.size_x + box_.size_y);
+    at_hand_ = finders::DriftStep(f_, -0.5 * step_, 0.5 * step_, box_.size_x + box_.size_y);
     at_hand_.bodies = particles_->bodies;
     finder_->begin(at_hand_);
   }
-  FinderResult ask(std::size_t low, std::size_t high, const Vec3& shift, double start) const {
+  finders::FinderResult ask(std::size_t low, std::size_t high, const Vec3& shift, double start) const {
     return finder_->find(
         {static_cast<std::uint32_t>(low), static_cast<std::uint32_t>(high), shift.x(), shift.y(), start});
   }
@@ -84,7 +84,7 @@ private:
       const double fastest = f_.shear() * std::fabs(el.guiding_x + nx * box_.size_x) + 2.0 * e;
       for (const int ny : within(y - nx * offset_, box_.size_y, reach + half * fastest)) {
         const Image image{nx, ny};
-        const FinderResult result = ask(low, high, box_.displacement(image, offset_), start);
+        const finders::FinderResult result = ask(low, high, box_.displacement(image, offset_), start);
         if (result.contact())
           pending_[{result.time, particles_->ids[low], particles_->ids[high], nx, ny}] = places;
       }
@@ -101,7 +101,8 @@ private:
   }
 
   // Uses the arithmetic of ContactLoop, operation by operation: otherwise the bits differ.
-  bool bounce(const Key& key, const Places& places, CollisionTally& tally, std::vector<CollisionRecord>& records) {
+  bool bounce(const Key& key, const Places& places, CollisionTally& tally,
+              std::vector<collision::CollisionRecord>& records) {
     const auto& [time, low_id, high_id, nx, ny] = key;
     const Image image{nx, ny};
     Body &a = particles_->bodies[places.first], &b = particles_->bodies[places.second];
@@ -109,7 +110,7 @@ private:
     const State relative = state_at(box_.image_of(b.elements, image, offset_) - a.elements, f_, rotation);
     const Vec3 normal = relative.position.normalized();
     const double speed = -relative.velocity.dot(normal);
-    const Rebound after = rebound(settings_, speed, a.radius, b.radius, omega_);
+    const collision::Rebound after = rebound(settings_, speed, a.radius, b.radius, omega_);
     if (!(speed > -after.speed))
       return false;
     const double reduced_mass = a.mass * b.mass / (a.mass + b.mass);
@@ -118,12 +119,12 @@ private:
     double rubbed = 0.0;
     if (settings_.friction) {
       Vec3 &spin_a = particles_->spins[places.first], &spin_b = particles_->spins[places.second];
-      const SpinTurn turn(time);
-      const Sliding sliding =
+      const particles::SpinTurn turn(time);
+      const collision::Sliding sliding =
           slide(*settings_.friction,
                 {a, b, normal, relative.velocity, turn.from_epoch(spin_a), turn.from_epoch(spin_b)}, normal_impulse);
-      spin_a += turn.to_epoch(spin_change(a, normal, sliding.impulse));
-      spin_b += turn.to_epoch(spin_change(b, normal, sliding.impulse));
+      spin_a += turn.to_epoch(collision::spin_change(a, normal, sliding.impulse));
+      spin_b += turn.to_epoch(collision::spin_change(b, normal, sliding.impulse));
       impulse += sliding.impulse;
       rubbed = sliding.energy_lost;
     }
@@ -144,11 +145,11 @@ private:
     return true;
   }
 
-  CollisionSettings settings_;
+  collision::CollisionSettings settings_;
   Frequencies f_;
   double omega_, step_;
-  DriftStep at_hand_;
-  std::unique_ptr<Finder> finder_;
+  finders::DriftStep at_hand_;
+  std::unique_ptr<finders::Finder> finder_;
   Particles* particles_ = nullptr;
   ShearingBox box_;
   double offset_ = 0.0;

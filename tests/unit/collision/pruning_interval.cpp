@@ -13,6 +13,7 @@
 namespace pruning_interval_test {
 
 using namespace keeler;
+using namespace keeler::collision;
 using namespace keeler::test;
 
 namespace {

@@ -9,6 +9,7 @@
 namespace rebuild_policy_test {
 
 using namespace keeler;
+using namespace keeler::collision;
 
 TEST_CASE("the lifetime of lists finds the cheapest one and stays near it") {
   // rebuilding costs 60 · 1000, and each step of age k costs 1000 k more

@@ -16,6 +16,7 @@
 namespace reference_paths_test {
 
 using namespace keeler;
+using namespace keeler::collision;
 using namespace keeler::test;
 
 namespace {

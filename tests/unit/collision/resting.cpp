@@ -73,7 +73,7 @@ Settled settle(const Scene& scene, const std::vector<Sphere>& spheres, int steps
     s.most = std::max(s.most, 2.0 * static_cast<double>(now - s.contacts) / static_cast<double>(spheres.size()));
     s.contacts = now;
     double& overlap = k < steps / 2 ? s.first : s.second;
-    overlap = std::max(overlap, largest_overlap(simulation.patch()).depth);
+    overlap = std::max(overlap, cells::largest_overlap(simulation.patch()).depth);
   }
   CHECK(simulation.state().collisions.gave_up == 0);
   for (const Vec3& place : simulation.patch().positions)

@@ -10,6 +10,7 @@
 namespace restitution_test {
 
 using namespace keeler;
+using namespace keeler::collision;
 
 TEST_CASE("restitution laws") {
   CHECK(constant_restitution(0.4)({.speed = 123.0}) == 0.4);

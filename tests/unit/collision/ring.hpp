@@ -14,7 +14,7 @@
 namespace keeler::test {
 
 /// Divides the contacts among all threads, even if they are few.
-struct InDomains final : DriftObserver {
+struct InDomains final : collision::DriftObserver {
   bool wants_events() const override { return false; }
   std::size_t wants_domains() const override { return static_cast<std::size_t>(threads()); }
 };
@@ -24,15 +24,15 @@ struct Ring {
   ShearingBox box;
   Frequencies frequencies;
   double step;
-  DriftPhase drift;
+  collision::DriftPhase drift;
   CollisionTally tally;
   std::int64_t steps = 0;
   bool keeps_neighbours = false; ///< keeps neighbour lists over several steps, as a run does
   bool undisturbed = false;      ///< true if particles have only moved on since the last drift
-  DriftObserver* observer = nullptr;
+  collision::DriftObserver* observer = nullptr;
   InDomains in_domains;
 
-  Ring(const Patch& patch, const CollisionSettings& settings, double step_length)
+  Ring(const Patch& patch, const collision::CollisionSettings& settings, double step_length)
       : particles(particles_from(patch, 0.5 * step_length)), box(patch.box), frequencies(patch.frequencies),
         step(step_length), drift(settings, patch.frequencies, omega, step_length) {}
 
@@ -53,13 +53,13 @@ struct Ring {
   void move_on() {
     ++steps;
     const double offset = epoch_offset();
-    const Rebase rebase(frequencies, step);
+    const hill::Rebase rebase(frequencies, step);
     for (Body& body : particles.bodies) {
       Elements& el = body.elements;
       rebase(el);
       el = box.image_of(el, box.image_into_cell(el.guiding_x, el.guiding_y, offset), offset);
     }
-    const FixedRotation stars(step);
+    const hill::FixedRotation stars(step);
     for (Vec3& spin : particles.spins)
       stars.turn(spin.y(), spin.x());
     undisturbed = keeps_neighbours;

@@ -29,7 +29,7 @@ inline bool same_bits(const CollisionTally& a, const CollisionTally& b) {
 }
 
 /// Compares all fields to the bit.
-inline bool same_bits(const CollisionRecord& a, const CollisionRecord& b) {
+inline bool same_bits(const collision::CollisionRecord& a, const collision::CollisionRecord& b) {
   return same_bits(a.time, b.time) && a.low_id == b.low_id && a.high_id == b.high_id && a.image == b.image &&
          same_bits(a.normal_speed, b.normal_speed) && a.fast == b.fast &&
          same_bits(a.tangential_speed, b.tangential_speed) && same_bits(a.energy_lost, b.energy_lost) &&

@@ -20,12 +20,12 @@ struct Scenario {
   double smallest = 1.0; ///< radius; the largest is 1
   double kappa = 1.0, nu = 1.0;
   double step = two_pi * 1e-3;
-  RestitutionLaw restitution = constant_restitution(0.5);
-  std::optional<Friction> friction{};
+  RestitutionLaw restitution = collision::constant_restitution(0.5);
+  std::optional<collision::Friction> friction{};
 };
 
-inline CollisionSettings settings_of(const Scenario& s) {
-  CollisionSettings settings;
+inline collision::CollisionSettings settings_of(const Scenario& s) {
+  collision::CollisionSettings settings;
   settings.restitution = s.restitution;
   settings.friction = s.friction;
   return settings;
@@ -33,9 +33,10 @@ inline CollisionSettings settings_of(const Scenario& s) {
 
 /// A patch in a box of 1.44 : 1.
 inline Patch make_patch(const Scenario& s, std::uint64_t seed) {
-  UniformRequest request;
+  initial_conditions::UniformRequest request;
   request.frequencies = {s.kappa, s.nu};
-  const SizeLaw law = s.smallest < 1.0 ? power_sizes(3.0, s.smallest, 1.0) : equal_sizes(1.0);
+  const particles::SizeLaw law =
+      s.smallest < 1.0 ? particles::power_sizes(3.0, s.smallest, 1.0) : particles::equal_sizes(1.0);
   request.radii = draw_radii(law, s.count, seed);
   double area = 0.0, volume = 0.0;
   for (const double r : request.radii) {

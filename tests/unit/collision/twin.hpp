@@ -9,22 +9,25 @@
 
 namespace keeler::test {
 
-struct Recorder : DriftObserver {
-  std::vector<CollisionRecord> records;
-  void collided(const CollisionRecord& record) override { records.push_back(record); }
+struct Recorder : collision::DriftObserver {
+  std::vector<collision::CollisionRecord> records;
+  void collided(const collision::CollisionRecord& record) override { records.push_back(record); }
 };
 
 /// Takes the records of the last step, carried out in domains.
-struct Taker : DriftObserver {
-  std::vector<CollisionRecord> records;
+struct Taker : collision::DriftObserver {
+  std::vector<collision::CollisionRecord> records;
   bool wants_events() const override { return false; }
   bool wants_records() const override { return true; }
   std::size_t wants_domains() const override { return static_cast<std::size_t>(threads()); }
-  void recorded(std::span<const CollisionRecord> of_step) override { records.assign(of_step.begin(), of_step.end()); }
+  void recorded(std::span<const collision::CollisionRecord> of_step) override {
+    records.assign(of_step.begin(), of_step.end());
+  }
 };
 
 /// Returns the number of leading records that are equal.
-inline std::size_t same_records(const std::vector<CollisionRecord>& a, const std::vector<CollisionRecord>& b) {
+inline std::size_t same_records(const std::vector<collision::CollisionRecord>& a,
+                                const std::vector<collision::CollisionRecord>& b) {
   std::size_t k = 0;
   while (k < std::min(a.size(), b.size()) && same_bits(a[k], b[k]))
     ++k;
@@ -55,7 +58,7 @@ inline double energy_scale(const Ring& ring) {
 
 class Twin {
 public:
-  Twin(Ring& ring, const CollisionSettings& settings)
+  Twin(Ring& ring, const collision::CollisionSettings& settings)
       : ring_(ring), plain_(settings, ring.frequencies, omega, ring.step) {}
 
   /// Drifts through one step and moves on; returns its collisions. Every other step is not observed event by event, so
@@ -67,12 +70,12 @@ public:
     CollisionTally tally, plain_tally;
     const double energy = total_energy(ring_), scale = energy_scale(ring_);
     Taker taker;
-    ring_.observer = watched ? static_cast<DriftObserver*>(&recorder) : &taker;
+    ring_.observer = watched ? static_cast<collision::DriftObserver*>(&recorder) : &taker;
     ring_.collide(tally);
     ring_.observer = nullptr;
     const auto expected = plain_.collide(copy, ring_.box, ring_.epoch_offset(), plain_tally);
     INFO("step ", ring_.steps, ", ", expected.size(), " collisions");
-    const std::vector<CollisionRecord>& records = watched ? recorder.records : taker.records;
+    const std::vector<collision::CollisionRecord>& records = watched ? recorder.records : taker.records;
     CHECK(records.size() == expected.size());
     REQUIRE(same_records(records, expected) == expected.size());
     REQUIRE(same_bits(ring_.particles, copy));
@@ -92,7 +95,7 @@ public:
     return collisions;
   }
 
-  std::vector<CollisionRecord> last; ///< of the last step
+  std::vector<collision::CollisionRecord> last; ///< of the last step
 
 private:
   Ring& ring_;

@@ -16,6 +16,7 @@
 namespace verlet_list_test {
 
 using namespace keeler;
+using namespace keeler::collision;
 
 namespace {
 

@@ -21,7 +21,7 @@ struct Calls : test::Recorder {
   std::vector<Search> searches;
   std::vector<std::size_t> changes;
 
-  void searched(const Query& q, const FinderResult&) override {
+  void searched(const finders::Query& q, const finders::FinderResult&) override {
     searches.push_back({q.low, q.high, q.shift_x, q.shift_y, q.start});
   }
   void changed(std::size_t particle) override { changes.push_back(particle); }

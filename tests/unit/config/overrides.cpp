@@ -9,6 +9,7 @@
 namespace config_overrides_test {
 
 using namespace keeler;
+using namespace keeler::config;
 using keeler::test::schema;
 
 TEST_CASE("an override replaces a value, an alternative and the keys of another choice") {

@@ -5,8 +5,8 @@
 
 namespace keeler::test {
 
-inline const Schema& schema() {
-  static const Schema all(
+inline const config::Schema& schema() {
+  static const config::Schema all(
       {{.path = "title", .fallback = "\"\"", .meaning = "a name", .effect = KeyEffect::output},
        {.path = "gravity.solver", .type = KeyType::choice, .fallback = "\"tree\"", .choices = {"tree", "fft"}},
        {.path = "gravity.opening_angle",

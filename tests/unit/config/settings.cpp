@@ -9,6 +9,7 @@
 namespace config_settings_test {
 
 using namespace keeler;
+using namespace keeler::config;
 using keeler::test::schema;
 
 namespace {

@@ -12,6 +12,7 @@
 namespace bounded_impulses_test {
 
 using namespace keeler;
+using namespace keeler::contact_solver;
 
 namespace {
 

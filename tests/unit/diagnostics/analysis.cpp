@@ -12,6 +12,7 @@
 namespace analysis_test {
 
 using namespace keeler;
+using namespace keeler::diagnostics;
 
 namespace {
 

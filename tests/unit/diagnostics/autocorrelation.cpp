@@ -9,6 +9,7 @@
 namespace autocorrelation_test {
 
 using namespace keeler;
+using namespace keeler::diagnostics;
 
 namespace {
 

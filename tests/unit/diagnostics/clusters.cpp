@@ -12,6 +12,7 @@
 namespace clusters_test {
 
 using namespace keeler;
+using namespace keeler::diagnostics;
 
 namespace {
 

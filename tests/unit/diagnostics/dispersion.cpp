@@ -7,6 +7,7 @@
 namespace dispersion_test {
 
 using namespace keeler;
+using namespace keeler::diagnostics;
 
 namespace {
 const ShearingBox box{60.0, 40.0, Frequencies{0.99458, 1.00539}.shear(), 0.0};

@@ -9,6 +9,7 @@
 namespace energy_test {
 
 using namespace keeler;
+using namespace keeler::diagnostics;
 
 TEST_CASE("the epicyclic energy is that of the velocities beyond the shear") {
   const Frequencies f{0.99458, 1.00539};

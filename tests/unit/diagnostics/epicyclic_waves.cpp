@@ -14,6 +14,7 @@
 namespace epicyclic_waves_test {
 
 using namespace keeler;
+using namespace keeler::diagnostics;
 
 namespace {
 

@@ -12,6 +12,7 @@
 namespace force_error_test {
 
 using namespace keeler;
+using namespace keeler::diagnostics;
 
 namespace {
 
@@ -36,7 +37,7 @@ Patch scattered(std::size_t count) {
 
 TEST_CASE("a sample of forces holds different particles, and those near each edge") {
   const Patch patch = scattered(5000);
-  const GravityProblem problem = gravity_problem(patch);
+  const gravity::GravityProblem problem = gravity_problem(patch);
   const ForceSample sample = draw_force_sample(problem, 1000, 50, 3.0);
   CHECK(sample.uniform == 1000);
   CHECK(sample.edges == std::array<std::size_t, 4>{50, 50, 50, 50});
@@ -47,7 +48,7 @@ TEST_CASE("a sample of forces holds different particles, and those near each edg
     mean += static_cast<double>(sample.targets[k]) / 1000.0;
   CHECK(mean == doctest::Approx(2500.0).epsilon(0.06)); // 5000 / √(12 · 1000) = 46: within three deviations
   for (std::size_t k = 1000; k < 1200; ++k) {
-    const Vec3 p = into_cell(patch.box, patch.offset, patch.positions[sample.targets[k]]);
+    const Vec3 p = gravity::into_cell(patch.box, patch.offset, patch.positions[sample.targets[k]]);
     const std::size_t edge = (k - 1000) / 50;
     const double depth[] = {p.x() + 50.0, 50.0 - p.x(), p.y() + 40.0, 40.0 - p.y()};
     CHECK(depth[edge] < 3.0);

@@ -11,6 +11,7 @@
 namespace local_test {
 
 using namespace keeler;
+using namespace keeler::diagnostics;
 
 namespace {
 

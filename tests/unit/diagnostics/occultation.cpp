@@ -11,6 +11,7 @@
 namespace occultation_test {
 
 using namespace keeler;
+using namespace keeler::diagnostics;
 
 namespace {
 const ShearingBox box{240.0, 200.0, 1.5, 0.0};

@@ -13,6 +13,7 @@
 namespace particle_means_test {
 
 using namespace keeler;
+using namespace keeler::diagnostics;
 
 namespace {
 

@@ -12,6 +12,7 @@
 namespace radial_modes_test {
 
 using namespace keeler;
+using namespace keeler::diagnostics;
 
 namespace {
 

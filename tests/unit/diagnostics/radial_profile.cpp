@@ -10,6 +10,7 @@
 namespace radial_profile_test {
 
 using namespace keeler;
+using namespace keeler::diagnostics;
 
 namespace {
 const ShearingBox box{60.0, 40.0, 1.5, 0.0};

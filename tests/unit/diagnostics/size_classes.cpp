@@ -9,6 +9,7 @@
 namespace size_classes_test {
 
 using namespace keeler;
+using namespace keeler::diagnostics;
 
 namespace {
 

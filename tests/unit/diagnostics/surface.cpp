@@ -7,6 +7,7 @@
 namespace surface_test {
 
 using namespace keeler;
+using namespace keeler::diagnostics;
 
 TEST_CASE("optical depth, surface density and λ_cr of the standard A-ring patch") {
   // τ = 0.5, r = 1 m, 600 kg/m³ give Σ = 400 kg/m² and, at Ω = 1.3175e-4 rad/s and κ = 0.99458 Ω, λ_cr = 61.4 m.

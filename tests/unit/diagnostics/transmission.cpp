@@ -12,6 +12,7 @@
 namespace transmission_test {
 
 using namespace keeler;
+using namespace keeler::diagnostics;
 
 namespace {
 

@@ -9,6 +9,7 @@
 namespace velocity_ellipsoid_test {
 
 using namespace keeler;
+using namespace keeler::diagnostics;
 
 TEST_CASE("axes and direction of a turned ellipsoid") {
   for (const double turn : {0.0, 12.0, -35.0, 80.0}) {

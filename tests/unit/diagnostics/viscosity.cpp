@@ -7,6 +7,7 @@
 namespace viscosity_test {
 
 using namespace keeler;
+using namespace keeler::diagnostics;
 
 TEST_CASE("translational viscosity is the flux of correlated velocities over the shear") {
   const ShearingBox box{60.0, 40.0, 1.5, 0.0};

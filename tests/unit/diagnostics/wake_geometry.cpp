@@ -7,6 +7,7 @@
 namespace wake_geometry_test {
 
 using namespace keeler;
+using namespace keeler::diagnostics;
 
 namespace {
 const ShearingBox box{245.0, 200.0, 1.5, 0.0};

@@ -9,6 +9,7 @@
 namespace wake_spectrum_test {
 
 using namespace keeler;
+using namespace keeler::diagnostics;
 
 namespace {
 

@@ -7,6 +7,7 @@
 namespace wakes_test {
 
 using namespace keeler;
+using namespace keeler::diagnostics;
 
 namespace {
 

@@ -11,6 +11,7 @@
 namespace columns_test {
 
 using namespace keeler;
+using namespace keeler::files;
 
 namespace {
 

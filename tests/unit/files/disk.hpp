@@ -70,7 +70,7 @@ inline void write_quickly(const std::filesystem::path& file, std::string_view te
 /// `judge` for each. All of the last 200 bytes, which include the seal, are tried.
 inline void for_each_damage(const std::filesystem::path& file, std::size_t stride,
                             const std::function<void(const std::string& damage)>& judge) {
-  const std::string whole = read_text(file);
+  const std::string whole = files::read_text(file);
   for (std::size_t at = 0; at < whole.size(); at += at + 200 < whole.size() ? stride : 1) {
     write_quickly(file, std::string_view(whole).substr(0, at));
     judge("cut at " + std::to_string(at));

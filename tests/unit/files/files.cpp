@@ -19,6 +19,7 @@
 namespace files_test {
 
 using namespace keeler;
+using namespace keeler::files;
 using namespace keeler::test;
 
 TEST_CASE("a file is replaced as a whole and reads back") {

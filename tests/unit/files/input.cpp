@@ -14,6 +14,7 @@
 namespace input_test {
 
 using namespace keeler;
+using namespace keeler::files;
 using namespace keeler::test;
 
 TEST_CASE("an unreadable input file is an error with the location where it was named") {

@@ -19,6 +19,7 @@
 namespace new_file_test {
 
 using namespace keeler;
+using namespace keeler::files;
 using namespace keeler::test;
 namespace fs = std::filesystem;
 

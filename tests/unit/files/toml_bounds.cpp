@@ -10,6 +10,7 @@
 namespace toml_bounds_test {
 
 using namespace keeler;
+using namespace keeler::files;
 
 namespace {
 

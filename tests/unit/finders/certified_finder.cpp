@@ -16,6 +16,7 @@
 namespace certified_finder_test {
 
 using namespace keeler;
+using namespace keeler::finders;
 using namespace keeler::test;
 
 namespace {

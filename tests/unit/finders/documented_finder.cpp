@@ -9,6 +9,7 @@
 namespace documented_finder_test {
 
 using namespace keeler;
+using namespace keeler::finders;
 
 TEST_CASE("the finder that the documentation adds is in the table and finds contacts") {
   const Frequencies f;

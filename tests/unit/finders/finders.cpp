@@ -9,6 +9,7 @@
 namespace finders_test {
 
 using namespace keeler;
+using namespace keeler::finders;
 
 namespace {
 

@@ -16,6 +16,7 @@
 namespace first_contacts_test {
 
 using namespace keeler;
+using namespace keeler::finders;
 using namespace keeler::test;
 
 namespace {

@@ -12,6 +12,7 @@
 namespace motions_test {
 
 using namespace keeler;
+using namespace keeler::finders;
 
 namespace {
 

@@ -12,6 +12,7 @@
 namespace published_test {
 
 using namespace keeler;
+using namespace keeler::finders;
 
 namespace {
 
@@ -107,7 +108,7 @@ TEST_CASE("grid pairs of a settled state at a thousandth of an orbit: iterations
 }
 
 TEST_CASE("ordinary contacts: every finder within the published tolerance of the certified one") {
-  struct Compare final : DriftObserver {
+  struct Compare final : collision::DriftObserver {
     std::vector<std::unique_ptr<Finder>> finders;
     const DriftStep* step = nullptr;
     int hits = 0;
@@ -158,14 +159,14 @@ TEST_CASE("every finder carries a dense state through fifty steps, ever larger o
     for (const FinderEntry& entry : finder_table()) {
       CAPTURE(entry.name);
       CAPTURE(step);
-      CollisionSettings settings;
+      collision::CollisionSettings settings;
       settings.finder = entry.name;
       test::Ring ring(test::equilibrium_patch(500, 6), settings, two_pi * step);
       for (int k = 0; k < 50; ++k)
         ring.advance();
       CHECK(ring.tally.fast > 100);
       const bool faithful = !starts_with(entry.name, "certified");
-      CHECK(largest_overlap(ring.patch()).depth < (faithful ? 0.2 : 1e-11)); // misses, and no worse
+      CHECK(cells::largest_overlap(ring.patch()).depth < (faithful ? 0.2 : 1e-11)); // misses, and no worse
     }
 }
 

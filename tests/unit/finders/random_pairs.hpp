@@ -29,7 +29,7 @@ inline constexpr std::array<const char*, families> family_names = {
 
 struct PairCase {
   std::array<Body, 2> bodies; ///< lower id first
-  Query query;                ///< of these two
+  finders::Query query;       ///< of these two
   Frequencies frequencies;
   double begin = 0.0, end = 0.0; ///< the step
   double size = 0.0;             ///< the largest coordinate

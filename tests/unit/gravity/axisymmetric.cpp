@@ -13,6 +13,7 @@
 namespace axisymmetric_test {
 
 using namespace keeler;
+using namespace keeler::gravity;
 using namespace keeler_test;
 
 namespace {

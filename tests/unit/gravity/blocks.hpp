@@ -11,6 +11,7 @@
 namespace keeler_test {
 
 using namespace keeler;
+using namespace keeler::gravity;
 
 struct Point {
   double x, y, z;

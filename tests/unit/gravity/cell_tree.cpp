@@ -7,6 +7,7 @@
 namespace cell_tree_test {
 
 using namespace keeler;
+using namespace keeler::gravity;
 using namespace keeler_test;
 
 namespace {

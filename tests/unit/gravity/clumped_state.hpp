@@ -18,6 +18,7 @@
 namespace keeler_test {
 
 using namespace keeler;
+using namespace keeler::gravity;
 
 struct ClumpedState {
   std::vector<Vec3> positions;

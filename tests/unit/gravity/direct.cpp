@@ -9,6 +9,7 @@
 namespace direct_test {
 
 using namespace keeler;
+using namespace keeler::gravity;
 using namespace keeler_test;
 
 namespace {

@@ -11,6 +11,7 @@
 namespace far_images_test {
 
 using namespace keeler;
+using namespace keeler::gravity;
 using namespace keeler_test;
 
 namespace {

@@ -15,6 +15,7 @@
 namespace fft_test {
 
 using namespace keeler;
+using namespace keeler::gravity;
 using namespace keeler_test;
 
 namespace {

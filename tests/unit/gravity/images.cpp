@@ -7,6 +7,7 @@
 namespace images_test {
 
 using namespace keeler;
+using namespace keeler::gravity;
 
 namespace {
 const ShearingBox box{96.0, 64.0, 1.5, 0.0};

@@ -10,6 +10,7 @@
 namespace lattice_test {
 
 using namespace keeler;
+using namespace keeler::gravity;
 
 namespace {
 

@@ -10,6 +10,7 @@
 namespace simd_test {
 
 using namespace keeler;
+using namespace keeler::gravity;
 
 namespace {
 

@@ -14,6 +14,7 @@
 namespace solver_test {
 
 using namespace keeler;
+using namespace keeler::gravity;
 using namespace keeler_test;
 
 namespace {

@@ -9,6 +9,7 @@
 namespace tree_test {
 
 using namespace keeler;
+using namespace keeler::gravity;
 using namespace keeler_test;
 
 namespace {

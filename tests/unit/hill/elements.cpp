@@ -8,6 +8,7 @@
 namespace elements_test {
 
 using namespace keeler;
+using namespace keeler::hill;
 
 namespace {
 

@@ -5,6 +5,7 @@
 namespace toomre_test {
 
 using namespace keeler;
+using namespace keeler::hill;
 
 TEST_CASE("Toomre's wavelength and Q have their published form in any units") {
   const double omega = 1.95e-4, sigma = 400.0, wavelength = critical_wavelength(newton_g_si, sigma, omega);

@@ -14,6 +14,7 @@
 namespace aggregates_test {
 
 using namespace keeler;
+using namespace keeler::initial_conditions;
 
 namespace {
 
@@ -37,7 +38,7 @@ struct Pile {
   double mass = 0.0, cubes = 0.0, farthest = 0.0;     // largest distance of a surface from the centre of the ball
 };
 
-Pile pile_of(const Patch& patch, const AggregateSettings& a) {
+Pile pile_of(const Patch& patch, const scene::AggregateSettings& a) {
   Pile pile;
   for (std::size_t k = a.first; k < a.first + a.count; ++k) {
     pile.mass += patch.masses[k];
@@ -87,9 +88,9 @@ TEST_CASE("aggregates have the filling, the place and the spin of the scene, on 
     const Patch patch = initial_patch(scene);
     const double shear = scene.planet.frequencies.shear();
     REQUIRE(patch.size() == scene.particles.count);
-    CHECK(largest_overlap(patch).depth == 0.0);
+    CHECK(cells::largest_overlap(patch).depth == 0.0);
     CHECK(patch.spins.empty());
-    for (const AggregateSettings& a : scene.particles.aggregates) {
+    for (const scene::AggregateSettings& a : scene.particles.aggregates) {
       const Pile pile = pile_of(patch, a);
       CHECK(pile.mass == doctest::Approx(a.mass).epsilon(1e-12));
       CHECK(pile.farthest <= a.radius);
@@ -132,13 +133,13 @@ TEST_CASE("aggregates stand beside moonlets, patterns and streamlines, or alone"
   CHECK(patch.size() == beside.particles.count + 1);
   CHECK(patch.radii.back() == 6.0);
   CHECK(patch.positions.back() == Vec3(0.0, -30.0, 0.0));
-  CHECK(largest_overlap(patch).depth == 0.0);
+  CHECK(cells::largest_overlap(patch).depth == 0.0);
   const Scene waves = scene_with(equal, two, {"particles.modes.standing=[[1, 0.3, 0.0]]"});
-  CHECK(largest_overlap(initial_patch(waves)).depth == 0.0);
+  CHECK(cells::largest_overlap(initial_patch(waves)).depth == 0.0);
   const Scene alone = scene_with(equal, "[[particles.aggregate]]\ncount = 150\n", {"particles.count=150"});
   const Patch ball = initial_patch(alone);
   CHECK(ball.size() == 150);
-  CHECK(largest_overlap(ball).depth == 0.0);
+  CHECK(cells::largest_overlap(ball).depth == 0.0);
   CHECK(pile_of(ball, alone.particles.aggregates[0]).farthest < alone.particles.aggregates[0].radius);
 }
 

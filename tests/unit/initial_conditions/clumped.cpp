@@ -14,6 +14,7 @@
 namespace clumped_test {
 
 using namespace keeler;
+using namespace keeler::initial_conditions;
 
 namespace {
 
@@ -71,7 +72,7 @@ TEST_CASE("a patch clumps until the criterion holds") {
   CHECK(c.settling.wavelength.change() <= c.settling.wavelength.tolerance);
   CHECK(c.settling.standing >= c.criterion.min_standing);
   CHECK(state.patch.time_orbits == c.orbits);
-  CHECK(largest_overlap(state.patch).depth < 1e-9);
+  CHECK(cells::largest_overlap(state.patch).depth < 1e-9);
   CHECK(c.sample_every_orbits == doctest::Approx(0.05)); // a multiple of the kick interval, 0.01
 
   CHECK(steps.size() == static_cast<std::size_t>(std::lround(c.orbits / 2e-3)));

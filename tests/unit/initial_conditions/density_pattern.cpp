@@ -59,11 +59,12 @@ std::string fault(const std::string& pattern) {
 } // namespace
 
 TEST_CASE("a pattern has the mean 1, and nowhere more than its peak") {
-  for (const DensityPattern& p :
-       {DensityPattern{}, DensityPattern{.size_x = 30, .size_y = 20, .low = -4, .high = 9, .factor = 3},
-        DensityPattern{.size_x = 30, .size_y = 20, .contrast = 0.7, .waves_x = 3, .waves_y = 1},
-        DensityPattern{.size_x = 30, .size_y = 20, .low = -4, .high = 9, .factor = 0.2, .contrast = 0.7, .waves_x = 2},
-        DensityPattern{.size_x = 30,
+  for (const scene::DensityPattern& p :
+       {scene::DensityPattern{}, scene::DensityPattern{.size_x = 30, .size_y = 20, .low = -4, .high = 9, .factor = 3},
+        scene::DensityPattern{.size_x = 30, .size_y = 20, .contrast = 0.7, .waves_x = 3, .waves_y = 1},
+        scene::DensityPattern{
+            .size_x = 30, .size_y = 20, .low = -4, .high = 9, .factor = 0.2, .contrast = 0.7, .waves_x = 2},
+        scene::DensityPattern{.size_x = 30,
         .size_y = 20,
         .low = -4,
         .high = 9,
@@ -88,7 +89,7 @@ TEST_CASE("a step has the density that is asked for on both sides, and the scene
   const Scene scene = scene_with("step = { between = [-30.0, 50.0], factor = 3.0 }");
   const Patch patch = initial_patch(scene);
   CHECK(patch.size() == scene_with("").particles.count);
-  CHECK(largest_overlap(patch).depth == 0.0);
+  CHECK(cells::largest_overlap(patch).depth == 0.0);
   const double beside = 1.0 / (1.0 + 2.0 * 80.0 / 240.0); // the mean equals the scene's
   // 1 m about the edges is left out: particles push each other apart. Noise of counts: 1/√N of 1500 to 3000
   CHECK(density_between(patch, -29.0, 49.0) == doctest::Approx(3.0 * beside).epsilon(3.0 / std::sqrt(2900.0)));
@@ -101,7 +102,7 @@ TEST_CASE("a step has the density that is asked for on both sides, and the scene
 
 TEST_CASE("a wake has the amplitude and the place that are asked for, and trails") {
   const Scene scene = scene_with("wake = { contrast = 0.6, wavelength = 62.0, pitch = 22.0 }");
-  const DensityPattern& pattern = scene.particles.pattern;
+  const scene::DensityPattern& pattern = scene.particles.pattern;
   CHECK(pattern.waves_x == 4);
   CHECK(pattern.waves_y == 1);
   CHECK(pattern.wavelength() == doctest::Approx(1.0 / std::hypot(4.0 / 240.0, 1.0 / 160.0)).epsilon(1e-14));
@@ -115,7 +116,7 @@ TEST_CASE("a wake has the amplitude and the place that are asked for, and trails
         doctest::Approx(pattern.relative(0.0, 0.0)).epsilon(1e-12));
 
   const Patch patch = initial_patch(scene);
-  CHECK(largest_overlap(patch).depth == 0.0);
+  CHECK(cells::largest_overlap(patch).depth == 0.0);
   const double noise = 2.0 / std::sqrt(static_cast<double>(patch.size()));
   CHECK(std::abs(wave(patch, 4, 1) - 0.6) < 3.0 * noise);
   CHECK(std::abs(wave(patch, 4, -1)) < 3.0 * noise);

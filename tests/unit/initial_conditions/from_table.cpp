@@ -11,24 +11,25 @@
 namespace from_table_test {
 
 using namespace keeler;
+using namespace keeler::initial_conditions;
 
 namespace {
 
 constexpr double omega = 2e-4;
 
-TableScene table_scene() {
-  TableScene of;
+scene::TableScene table_scene() {
+  scene::TableScene of;
   of.scene.planet.orbital_frequency = omega;
   of.scene.size_x = 60.0;
   of.scene.size_y = 40.0;
   return of;
 }
 
-ParticleTable one(const Vec3& place, const Vec3& velocity) {
+io::ParticleTable one(const Vec3& place, const Vec3& velocity) {
   return {"t.csv", {place}, {velocity}, {1.0}, {4000.0}, {2}};
 }
 
-std::string fault(const ParticleTable& table) {
+std::string fault(const io::ParticleTable& table) {
   try {
     patch_from_table(table, table_scene());
   } catch (const UsageError& error) {
@@ -39,14 +40,14 @@ std::string fault(const ParticleTable& table) {
 
 // Spheres of 0.5 to 1.5 m at random in a slab, their mid-plane filled to a third and many of them overlapping.
 Patch crowd() {
-  ParticleTable table;
+  io::ParticleTable table;
   RandomStream random(3, RandomPurpose::position, 0);
   for (int k = 0; k < 700; ++k) {
     const double x = random.uniform(), y = random.uniform(), z = random.uniform(), r = random.uniform();
     table.positions.emplace_back(60.0 * (x - 0.5), 40.0 * (y - 0.5), 4.0 * (z - 0.5));
     table.radii.push_back(0.5 + r);
   }
-  TableScene of = table_scene();
+  scene::TableScene of = table_scene();
   of.density = 900.0;
   return patch_from_table(table, of);
 }
@@ -54,7 +55,7 @@ Patch crowd() {
 } // namespace
 
 TEST_CASE("a table's particles are taken as they are") {
-  ParticleTable table = one({10.0, -5.0, 1.0}, {1e-4, -3e-3, 2e-4});
+  io::ParticleTable table = one({10.0, -5.0, 1.0}, {1e-4, -3e-3, 2e-4});
   const Patch patch = patch_from_table(table, table_scene());
   CHECK(patch.positions == table.positions);
   CHECK((patch.velocities[0] * omega - table.velocities[0]).norm() < 1e-18);
@@ -65,7 +66,7 @@ TEST_CASE("a table's particles are taken as they are") {
 
   table.velocities.clear(); // circular: S x in the orbit's direction, backwards
   table.masses.clear();
-  TableScene of = table_scene();
+  scene::TableScene of = table_scene();
   CHECK_THROWS_WITH_AS(
       patch_from_table(table, of),
       "t.csv: no column m, and the scene has no particles.density (one of them is needed for the masses); add "
@@ -78,14 +79,14 @@ TEST_CASE("a table's particles are taken as they are") {
 }
 
 TEST_CASE("a table's spins are those of rough particles, in rad/s against the stars; smooth ones have none") {
-  ParticleTable table = one({10.0, -5.0, 1.0}, {1e-4, -3e-3, 2e-4});
+  io::ParticleTable table = one({10.0, -5.0, 1.0}, {1e-4, -3e-3, 2e-4});
   table.spins = {{1e-4, -2e-4, 3e-4}};
-  TableScene of = table_scene();
+  scene::TableScene of = table_scene();
   CHECK_THROWS_WITH_AS(patch_from_table(table, of),
                        "t.csv: sx sy sz are spins, but the scene's particles are smooth (it has no "
                        "[collisions.friction]); add that table to the scene or remove the columns",
                        UsageError);
-  of.scene.collisions.friction = Friction{};
+  of.scene.collisions.friction = collision::Friction{};
   const Patch patch = patch_from_table(table, of);
   REQUIRE(patch.spins.size() == 1);
   CHECK((patch.spins[0] - Vec3(0.5, -1.0, 1.5)).norm() < 1e-15);
@@ -101,14 +102,14 @@ TEST_CASE("a table's spins are those of rough particles, in rad/s against the st
 TEST_CASE("a particle that no ring has, or outside the box, is named by its row") {
   const Vec3 here(1.0, 1.0, 0.0), still(0.0, -1.5 * omega, 0.0);
   CHECK(fault(one(here, still)).empty());
-  const auto says = [&](const ParticleTable& table, const std::string& words) {
+  const auto says = [&](const io::ParticleTable& table, const std::string& words) {
     CAPTURE(fault(table));
     CHECK(fault(table).find("t.csv:2: the particle has " + words) == 0);
     CHECK(fault(table).find("; correct it or remove the row") != std::string::npos);
   };
   says(one({1.0, NAN, 0.0}, still), "a position or a velocity that is not finite");
   says(one(here, {0.0, INFINITY, 0.0}), "a position or a velocity that is not finite");
-  ParticleTable table = one(here, still);
+  io::ParticleTable table = one(here, still);
   table.radii[0] = -1.0;
   says(table, "a radius (m) of -1 (possible is from 1e-6 to 1000000)");
   table = one(here, still);
@@ -132,10 +133,10 @@ TEST_CASE("particles that overlap are counted, and moved apart with their random
           pairs += (sum - d.norm()) / sum > 1e-8;
         }
   REQUIRE(pairs > 100);
-  CHECK(count_overlaps(patch, 1e-8) == pairs);
+  CHECK(cells::count_overlaps(patch, 1e-8) == pairs);
   const Patch before = patch;
   const Relaxation done = relax(patch);
-  CHECK(count_overlaps(patch, 0.0) == 0);
+  CHECK(cells::count_overlaps(patch, 0.0) == 0);
   CHECK(done.moved > pairs / 2);
   CHECK(done.farthest < 5.0);
   for (std::size_t k = 0; k < patch.size(); ++k) {

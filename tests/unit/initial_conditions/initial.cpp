@@ -49,13 +49,13 @@ TEST_CASE("dense scenes whose equilibria exist start, at the default dispersion"
     const Scene scene = scene_of(c.planet, c.particles + spheres, 50.0);
     CHECK(scene.notices.empty() == !c.flat_topped);
     const Patch patch = initial_patch(scene);
-    CHECK(largest_overlap(patch).depth == 0.0);
-    CHECK(optical_depth(patch) == doctest::Approx(scene.optical_depth()).epsilon(1e-12));
+    CHECK(cells::largest_overlap(patch).depth == 0.0);
+    CHECK(diagnostics::optical_depth(patch) == doctest::Approx(scene.optical_depth()).epsilon(1e-12));
     // 5 % for separation and sampling: 1/√(2N) of 2000 particles or more
     const double height = layer_height(scene.optical_depth(), scene.particles.layer_sizes(),
                                        scene.particles.velocity_dispersion, scene.planet.frequencies.nu);
-    CHECK(scale_height(patch) == doctest::Approx(height).epsilon(0.08));
-    const double c_x = velocity_dispersion(patch).x(), count = static_cast<double>(patch.size());
+    CHECK(diagnostics::scale_height(patch) == doctest::Approx(height).epsilon(0.08));
+    const double c_x = diagnostics::velocity_dispersion(patch).x(), count = static_cast<double>(patch.size());
     CHECK(std::fabs(c_x / scene.particles.velocity_dispersion - 1.0) < 3.0 / std::sqrt(2.0 * count));
   }
 }
@@ -75,10 +75,10 @@ TEST_CASE("tau, the moments of the law and the dispersion are those of the scene
   const auto& sizes = scene.particles.sizes;
   const double mean_area = sizes.mean_power(2);
   const double area_error = std::sqrt((sizes.mean_power(4) / (mean_area * mean_area) - 1.0) / count);
-  CHECK(std::fabs(optical_depth(patch) / 0.8 - 1.0) < 3.0 * area_error);
+  CHECK(std::fabs(diagnostics::optical_depth(patch) / 0.8 - 1.0) < 3.0 * area_error);
   const double c_x = scene.particles.velocity_dispersion * sizes.mean_power(1);
-  CHECK(std::fabs(velocity_dispersion(patch).x() / c_x - 1.0) < 3.0 * std::sqrt(0.5 * weight));
-  CHECK(largest_overlap(patch).depth == 0.0);
+  CHECK(std::fabs(diagnostics::velocity_dispersion(patch).x() / c_x - 1.0) < 3.0 * std::sqrt(0.5 * weight));
+  CHECK(cells::largest_overlap(patch).depth == 0.0);
 }
 
 TEST_CASE("a moonlet in a table of radii does not thicken the layer of the grains") {
@@ -86,7 +86,7 @@ TEST_CASE("a moonlet in a table of radii does not thicken the layer of the grain
     Scene scene = scene_of("", "count = 4000\n" + spheres, 160.0);
     std::vector<double> radii(4000, 1.0);
     radii.back() = moonlet;
-    scene.particles.sizes = listed_sizes(radii);
+    scene.particles.sizes = particles::listed_sizes(radii);
     const Patch patch = initial_patch(scene);
     double squares = 0.0;
     for (std::size_t k = 0; k < patch.size(); ++k)

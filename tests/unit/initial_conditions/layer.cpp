@@ -10,6 +10,7 @@
 namespace layer_test {
 
 using namespace keeler;
+using namespace keeler::initial_conditions;
 
 TEST_CASE("a layer that is sparse enough is Gaussian, a denser one has the same height and the filling allowed") {
   const double height = 2.3;

@@ -32,7 +32,7 @@ TEST_CASE("moonlets stand where the scene says, with the last ids, and nothing o
     const Patch patch = initial_patch(scene);
     const std::size_t count = scene.particles.count;
     REQUIRE(patch.size() == count + 2);
-    CHECK(largest_overlap(patch).depth == 0.0);
+    CHECK(cells::largest_overlap(patch).depth == 0.0);
     CHECK(patch.positions[count] == Vec3(31.0, -10.0, 2.0));
     CHECK(patch.radii[count] == 12.0);
     CHECK(patch.masses[count] == scene.moonlets[0].mass);
@@ -57,7 +57,7 @@ TEST_CASE("moonlets that touch keep their places, and grains keep clear of them"
   const Scene scene = scene_with("[[moonlet]]\nradius = 6.0\ndensity = 450.0\nplace = [-6, 0, 0]\n"
                                  "[[moonlet]]\nradius = 6.0\ndensity = 450.0\nplace = [6, 0, 0]\n",
                                  "sizes = { law = \"equal\", radius = 0.5 }\n");
-  CHECK(largest_overlap(initial_patch(scene)).depth == 0.0);
+  CHECK(cells::largest_overlap(initial_patch(scene)).depth == 0.0);
 }
 
 TEST_CASE("a start with moonlets has the same bits for any number of threads") {

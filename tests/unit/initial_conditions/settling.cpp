@@ -11,6 +11,7 @@
 namespace settling_test {
 
 using namespace keeler;
+using namespace keeler::initial_conditions;
 
 namespace {
 
@@ -26,8 +27,8 @@ struct Course {
   std::function<bool(double)> standing = [](double) { return true; };
 };
 
-WakePower waves_of(double wavelength, double radial_wavelength, double contrast, bool standing) {
-  WakePower waves;
+diagnostics::WakePower waves_of(double wavelength, double radial_wavelength, double contrast, bool standing) {
+  diagnostics::WakePower waves;
   waves.snapshots = 1;
   waves.power = 0.5 * contrast * contrast;
   waves.bins[0] = {waves.power, waves.power * two_pi / wavelength, waves.power * two_pi / radial_wavelength};

@@ -17,6 +17,7 @@
 namespace start_file_test {
 
 using namespace keeler;
+using namespace keeler::initial_conditions;
 
 namespace {
 
@@ -42,7 +43,7 @@ std::string fault(const std::function<void(Patch&)>& change) {
   const std::string file = (std::filesystem::temp_directory_path() / "keeler-test-start.hdf").string();
   Patch patch = initial_patch(scene());
   change(patch);
-  write_snapshot(file, patch, {scene().resolved, {}});
+  io::write_snapshot(file, patch, {scene().resolved, {}});
   std::string message;
   try {
     initial_patch(scene({}, file));
@@ -86,7 +87,7 @@ TEST_CASE("rough particles that start.keep keeps have their spins") {
   Patch patch = initial_patch(scene({rough}));
   for (std::size_t k = 0; k < patch.size(); ++k)
     patch.spins.emplace_back(0.1 * static_cast<double>(k), 1.0, -0.2 * static_cast<double>(k));
-  write_snapshot(file, patch, {scene().resolved, {}});
+  io::write_snapshot(file, patch, {scene().resolved, {}});
   const Patch kept = initial_patch(scene({rough, "start.keep=0.4"}, file));
   std::filesystem::remove(file);
   REQUIRE(kept.size() > 5);
@@ -97,29 +98,29 @@ TEST_CASE("rough particles that start.keep keeps have their spins") {
 }
 
 TEST_CASE("doubts about a patch have numbers, and a large one none") {
-  const std::vector<std::string> small = warnings(scene());
+  const std::vector<std::string> small = advice::warnings(scene());
   REQUIRE(small.size() == 2);
   CHECK(small[0].find("34 particles are few: one measurement of the velocity dispersion scatters by 12 %") == 0);
   CHECK(small[1].find("the box spans 6.1 lambda_cr") == 0);
-  CHECK(warnings(scene(), scale_of(initial_patch(scene()))) == small);
+  CHECK(advice::warnings(scene(), scale_of(initial_patch(scene()))) == small);
   const std::vector<std::string> wakes = {"box.size_in_wavelengths=[4,4]", "particles.optical_depth=0.5",
                                           "particles.velocity_dispersion=3.5"};
-  REQUIRE(warnings(scene(wakes)).size() == 1);
-  CHECK(warnings(scene(wakes)).front() ==
+  REQUIRE(advice::warnings(scene(wakes)).size() == 1);
+  CHECK(advice::warnings(scene(wakes)).front() ==
         "the box spans 4 lambda_cr: in wakes, a box of 4 x 4 has 12 % less velocity dispersion "
         "and 18 % less viscosity than one of 8 x 8");
-  CHECK(warnings(scene({"box.size_in_wavelengths=[8,8]", "particles.optical_depth=0.5",
-                        "particles.velocity_dispersion=3.5"}))
+  CHECK(advice::warnings(scene({"box.size_in_wavelengths=[8,8]", "particles.optical_depth=0.5",
+                                "particles.velocity_dispersion=3.5"}))
             .empty());
 }
 
 // ε_cr of Goldreich & Tremaine (1978), sqrt(1 - 0.61/(1 + τ²)): 0.625 at τ 0, 0.834 at 1.
 TEST_CASE("a restitution without an equilibrium is doubted, in a scene and of a start from a file") {
-  CHECK(critical_restitution(0.0) == doctest::Approx(std::sqrt(0.39)));
-  CHECK(critical_restitution(1.0) == doctest::Approx(0.8337).epsilon(1e-4));
+  CHECK(advice::critical_restitution(0.0) == doctest::Approx(std::sqrt(0.39)));
+  CHECK(advice::critical_restitution(1.0) == doctest::Approx(0.8337).epsilon(1e-4));
   const std::string file = (std::filesystem::temp_directory_path() / "keeler-test-elastic.hdf").string();
   const std::vector<std::string> many = {"box.size=[100,100]", "particles.count=1600"}; // τ 0.5, ε_cr 0.7155
-  write_snapshot(file, initial_patch(scene(many)), {scene(many).resolved, {}});
+  io::write_snapshot(file, initial_patch(scene(many)), {scene(many).resolved, {}});
   const auto said = [&](std::vector<std::string> overrides) {
     const Scene from = scene(overrides, file);
     overrides.insert(overrides.end(), many.begin(), many.end());
@@ -130,8 +131,8 @@ TEST_CASE("a restitution without an equilibrium is doubted, in a scene and of a 
                std::string::npos;
       });
     };
-    const auto fresh = of(warnings(scene(overrides)));
-    CHECK(of(warnings(from, scale_of(initial_patch(from)))) == fresh);
+    const auto fresh = of(advice::warnings(scene(overrides)));
+    CHECK(of(advice::warnings(from, scale_of(initial_patch(from)))) == fresh);
     return fresh;
   };
   const std::string constant = "collisions.restitution={{ law = \"constant\", value = {} }}";
@@ -147,7 +148,7 @@ TEST_CASE("a restitution without an equilibrium is doubted, in a scene and of a 
 
 TEST_CASE("a box of a few diameters is doubted, a moonlet's included") {
   const auto first = [](const std::vector<std::string>& overrides) {
-    for (const std::string& line : warnings(scene(overrides)))
+    for (const std::string& line : advice::warnings(scene(overrides)))
       if (line.find("diameters") != std::string::npos)
         return line.substr(0, line.find(':'));
     return std::string();
@@ -160,7 +161,7 @@ TEST_CASE("a box of a few diameters is doubted, a moonlet's included") {
 }
 
 TEST_CASE("starts far from any ring are doubted, and others are not, however they move") {
-  const auto said = [](const Patch& patch) { return warnings(scale_of(patch).start); };
+  const auto said = [](const Patch& patch) { return advice::warnings(scale_of(patch).start); };
   const auto of = [](const std::vector<std::string>& overrides) { return initial_patch(scene(overrides)); };
   const std::string many = "particles.optical_depth=0.1", wide = "box.size=[400,100]";
   // Streamlines that nearly cross, in a box many times wider than the particles; and a ball in synchronous rotation.
@@ -203,12 +204,13 @@ TEST_CASE("starts far from any ring are doubted, and others are not, however the
 TEST_CASE("of a start from a file the kick interval is judged by the file's own density") {
   const std::string file = (std::filesystem::temp_directory_path() / "keeler-test-dense.hdf").string();
   const auto said_of = [&](double density) {
-    write_snapshot(file, initial_patch(scene({fmt::format("particles.density={}", density)})), {scene().resolved, {}});
+    io::write_snapshot(file, initial_patch(scene({fmt::format("particles.density={}", density)})),
+                       {scene().resolved, {}});
     const Scene from = scene({"time.step=1e-3", "gravity.kick_every=20"}, file);
-    const PatchScale scale = scale_of(initial_patch(from));
+    const scene::PatchScale scale = scale_of(initial_patch(from));
     std::filesystem::remove(file);
     CHECK(scale.density == doctest::Approx(density).epsilon(1e-12));
-    const std::vector<std::string> lines = warnings(from, scale);
+    const std::vector<std::string> lines = advice::warnings(from, scale);
     return std::count_if(lines.begin(), lines.end(), [](const std::string& line) {
       return line.find("kicks are 0.02 orbits apart: aggregates form at r_h 1.3, cannot rest") == 0;
     });
@@ -221,7 +223,7 @@ TEST_CASE("a share of a start file's particles is kept, the same ones of any sta
   const std::string file = (std::filesystem::temp_directory_path() / "keeler-test-keep.hdf").string();
   const Scene whole = scene({"particles.count=3000", "box.size=[400, 400]"});
   const Patch patch = initial_patch(whole);
-  write_snapshot(file, patch, {whole.resolved, {}});
+  io::write_snapshot(file, patch, {whole.resolved, {}});
   const auto kept = [&](const std::string& share, const std::string& seed) {
     return initial_patch(scene({"start.keep=" + share, "start.keep_seed=" + seed}, file));
   };

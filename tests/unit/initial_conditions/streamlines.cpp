@@ -15,6 +15,7 @@
 namespace streamlines_test {
 
 using namespace keeler;
+using namespace keeler::initial_conditions;
 
 namespace {
 
@@ -97,9 +98,10 @@ TEST_CASE("a scene's mode is measured as it was seeded, for any number of thread
     const Patch patch = initial_patch(scene);
     CHECK(std::equal(patch.positions.begin(), patch.positions.end(), one.positions.begin()));
     CHECK(std::equal(patch.velocities.begin(), patch.velocities.end(), one.velocities.begin()));
-    CHECK(largest_overlap(patch).depth == 0.0);
-    const RadialMode mode = radial_modes(patch, 1)[0];
-    CHECK(std::abs(mode.density - std::polar(0.1, 40.0 * pi / 180.0)) < 2.0 * radial_mode_noise(patch)); // 0.025
+    CHECK(cells::largest_overlap(patch).depth == 0.0);
+    const diagnostics::RadialMode mode = diagnostics::radial_modes(patch, 1)[0];
+    CHECK(std::abs(mode.density - std::polar(0.1, 40.0 * pi / 180.0)) <
+          2.0 * diagnostics::radial_mode_noise(patch)); // 0.025
     // κe = 3.2 m/rad; amplitudes of the random velocities of 2 m/rad have an rms of 0.05
     const double whole = 0.1 * 200.0 / two_pi;
     CHECK(std::fabs(std::abs(mode.outward(1.0)) - c.outward * whole) < 0.12);
@@ -118,13 +120,14 @@ TEST_CASE("without collisions a mode neither grows nor decays: after an orbit it
     for (int step = 0; step < 200; ++step)
       simulation.advance();
   }
-  const std::vector<RadialModeAnalysis> modes = analyze_radial_modes(patches, 2);
-  for (const RadialModeAnalysis& mode : modes) {
+  const std::vector<diagnostics::RadialModeAnalysis> modes = diagnostics::analyze_radial_modes(patches, 2);
+  for (const diagnostics::RadialModeAnalysis& mode : modes) {
     REQUIRE(mode.growth);
     CHECK(std::fabs(mode.growth->rate) < 1e-9);
     CHECK(mode.density_amplitude == doctest::Approx(0.1).epsilon(0.5)); // 4000 at random: 0.03
     CHECK(mode.density_amplitude ==
-          doctest::Approx(std::abs(radial_modes(patches[0], 2)[static_cast<std::size_t>(mode.n) - 1].density))
+          doctest::Approx(
+              std::abs(diagnostics::radial_modes(patches[0], 2)[static_cast<std::size_t>(mode.n) - 1].density))
               .epsilon(1e-9));
   }
 }
@@ -163,7 +166,7 @@ end = 1.0
 )",
                                   "s.toml");
   const Patch patch = initial_patch(scene);
-  CHECK(largest_overlap(patch).depth == 0.0);
+  CHECK(cells::largest_overlap(patch).depth == 0.0);
   const double k = two_pi * 2 / 100.0;
   std::complex<double> pattern = 0.0;
   double inclination = 0.0, height = 0.0, e2 = 0.0;

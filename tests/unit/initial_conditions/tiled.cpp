@@ -17,6 +17,7 @@
 namespace tiled_test {
 
 using namespace keeler;
+using namespace keeler::initial_conditions;
 
 namespace {
 
@@ -79,7 +80,7 @@ TEST_CASE("all distances of a tiled patch are those of the patch, across the new
     REQUIRE(large.size() == patch.size() * tiling.first * tiling.second);
     CHECK(large.box.size_x == static_cast<double>(tiling.first) * patch.box.size_x);
     CHECK(large.box.size_y == static_cast<double>(tiling.second) * patch.box.size_y);
-    CHECK(largest_overlap(large).depth < 1e-12);
+    CHECK(cells::largest_overlap(large).depth < 1e-12);
     double worst = 0.0;
     std::size_t of_another_number = 0, outside = 0;
     for (std::size_t k = 0; k < large.size(); ++k) {
@@ -114,7 +115,8 @@ TEST_CASE("each copy keeps the motion of the patch until rounding grows") {
     double worst = 0.0;
     for (std::size_t k = 0; k < all.size(); ++k) {
       const std::size_t particle = k % small.size();
-      worst = std::max(worst, (peculiar_velocity(all, k) - peculiar_velocity(small, particle)).norm());
+      worst = std::max(
+          worst, (diagnostics::peculiar_velocity(all, k) - diagnostics::peculiar_velocity(small, particle)).norm());
       worst = std::max(worst, std::fabs(all.positions[k].z() - small.positions[particle].z()));
     }
     CHECK(worst < 1e-9); // of motions of 1 m/rad: a collision multiplies an error of 1e-14 by about ten
@@ -131,7 +133,7 @@ TEST_CASE("copies keep radii and masses, and get ids by the rule") {
     CHECK(large.radii[k] == patch.radii[k % 24]);
     CHECK(large.masses[k] == patch.masses[k % 24]);
   }
-  CHECK(optical_depth(large) == doctest::Approx(optical_depth(patch)).epsilon(1e-12));
+  CHECK(diagnostics::optical_depth(large) == doctest::Approx(diagnostics::optical_depth(patch)).epsilon(1e-12));
 }
 
 TEST_CASE("one copy is the patch") {

@@ -14,6 +14,7 @@
 namespace uniform_test {
 
 using namespace keeler;
+using namespace keeler::initial_conditions;
 
 namespace {
 
@@ -38,7 +39,7 @@ UniformRequest equal_layer(double optical_depth, double filling, std::size_t cou
 }
 
 std::vector<double> power_law(double smallest, double largest, std::size_t count) {
-  return draw_radii(power_sizes(3.0, smallest, largest), count, 4);
+  return draw_radii(particles::power_sizes(3.0, smallest, largest), count, 4);
 }
 
 // Brute force: the smallest gap over all pairs and images, in units of the smaller radius.
@@ -96,7 +97,7 @@ TEST_CASE("no overlaps, up to a mid-plane filling of 0.55, with the height and t
       CAPTURE(optical_depth);
       const UniformRequest request = equal_layer(optical_depth, filling, 2000, 3);
       const Patch patch = uniform_patch(request);
-      CHECK(largest_overlap(patch).depth == 0.0);
+      CHECK(cells::largest_overlap(patch).depth == 0.0);
       double x2 = 0.0, y2 = 0.0, z2 = 0.0;
       for (std::size_t k = 0; k < patch.size(); ++k) {
         const Vec3& v = patch.velocities[k];
@@ -131,12 +132,12 @@ TEST_CASE("each pair is apart, by brute force, in boxes large and small") {
 
 TEST_CASE("sizes over three and four decades are placed without overlap") {
   const Patch power = uniform_patch(layer(power_law(0.01, 10.0, 10000), 0.6, 0.2, 4));
-  CHECK(largest_overlap(power).depth == 0.0);
+  CHECK(cells::largest_overlap(power).depth == 0.0);
   std::vector<double> table;
   for (int k = 0; k <= 40; ++k) // from 1 to 10⁻⁴, in increasing number
     table.insert(table.end(), static_cast<std::size_t>(std::pow(10.0, 0.09 * k)), std::pow(10.0, -0.1 * k));
   const Patch listed = uniform_patch(layer(table, 0.8, 0.2, 5));
-  CHECK(largest_overlap(listed).depth == 0.0);
+  CHECK(cells::largest_overlap(listed).depth == 0.0);
 }
 
 TEST_CASE("a moonlet takes the middle of a layer that is as thin as without it") {
@@ -146,7 +147,7 @@ TEST_CASE("a moonlet takes the middle of a layer that is as thin as without it")
   request.dispersion_z = 1.3;
   request.dispersion_x = 2.0;
   const Patch patch = uniform_patch(request);
-  CHECK(largest_overlap(patch).depth == 0.0);
+  CHECK(cells::largest_overlap(patch).depth == 0.0);
   CHECK(std::fabs(patch.positions.back().z()) < 0.1);
   const Vec3 shear(0.0, -1.5 * patch.positions.back().x(), 0.0);
   CHECK((patch.velocities.back() - shear).norm() < 0.3);

@@ -14,6 +14,7 @@
 namespace checkpoint_test {
 
 using namespace keeler;
+using namespace keeler::io;
 using namespace keeler::test;
 
 namespace {

@@ -10,6 +10,7 @@
 namespace checkpoint_folder_test {
 
 using namespace keeler;
+using namespace keeler::io;
 using namespace keeler::test;
 
 namespace {
@@ -21,9 +22,9 @@ void write_step(const TemporaryFolder& folder, std::int64_t step) {
 }
 
 void damage(const std::filesystem::path& file) {
-  std::string content = read_text(file);
+  std::string content = files::read_text(file);
   content[content.size() / 2] ^= 1;
-  write_text(file, content);
+  files::write_text(file, content);
 }
 
 } // namespace
@@ -34,7 +35,7 @@ TEST_CASE("checkpoints are listed by number, newest first") {
     write_step(folder, step);
   for (const char* other :
        {"checkpoint_.h5", "checkpoint_12a.h5", "snap_000030.hdf", "checkpoint_000040.h5.keeler-0123456789abcdef.tmp"})
-    write_text(folder / other, "");
+    files::write_text(folder / other, "");
   const auto files = list_checkpoints(folder.path());
   REQUIRE(files.size() == 4);
   CHECK(files[0].filename() == "checkpoint_1000000.h5");
@@ -55,7 +56,7 @@ TEST_CASE("when the newest checkpoint is damaged, the previous one is used with 
   REQUIRE(newest.warnings.size() == 1);
   CHECK(newest.warnings[0].find("checkpoint_000030.h5' is damaged") != std::string::npos);
 
-  write_text(checkpoint_path(folder.path(), 20), "");
+  files::write_text(checkpoint_path(folder.path(), 20), "");
   newest = newest_valid_checkpoint(folder.path());
   CHECK(newest.path == checkpoint_path(folder.path(), 10));
   CHECK(newest.warnings.size() == 2);
@@ -74,8 +75,8 @@ TEST_CASE("pruning keeps the newest and removes torn files") {
   const TemporaryFolder folder;
   for (const int step : {10, 20, 30, 40})
     write_step(folder, step);
-  write_text(folder / "checkpoint_000050.h5.keeler-0123456789abcdef.tmp", "torn");
-  write_text(folder / "series.csv", "");
+  files::write_text(folder / "checkpoint_000050.h5.keeler-0123456789abcdef.tmp", "torn");
+  files::write_text(folder / "series.csv", "");
   prune_checkpoints(checkpoint_path(folder.path(), 40));
   const auto files = list_checkpoints(folder.path());
   REQUIRE(files.size() == 2);

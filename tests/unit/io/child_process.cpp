@@ -15,6 +15,7 @@
 namespace child_process_test {
 
 using namespace keeler;
+using namespace keeler::io;
 
 namespace {
 

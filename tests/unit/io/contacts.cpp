@@ -9,6 +9,7 @@
 namespace contacts_test {
 
 using namespace keeler;
+using namespace keeler::io;
 using namespace keeler::test;
 
 namespace {
@@ -40,7 +41,7 @@ TEST_CASE("a contact file that is damaged or of another kind is an error") {
   const TemporaryFolder folder;
   const auto file = folder / "collisions_000000.h5";
   write_contacts(file, some_rows(), {});
-  const std::string whole = read_text(file);
+  const std::string whole = files::read_text(file);
   write_quickly(file, whole.substr(0, whole.size() / 2));
   CHECK_THROWS_WITH_AS(read_contacts(file), doctest::Contains("is damaged"), IoError);
   CHECK_THROWS_AS(read_contacts(folder / "none.h5"), IoError);

@@ -11,6 +11,7 @@
 namespace describe_test {
 
 using namespace keeler;
+using namespace keeler::io;
 using namespace keeler::test;
 
 TEST_CASE("a checkpoint is described field by field") {
@@ -64,7 +65,7 @@ TEST_CASE("a snapshot is described by its arrays and attributes") {
 
 TEST_CASE("other files are errors") {
   const TemporaryFolder folder;
-  write_text(folder / "a.txt", "title = \"A\"\n");
+  files::write_text(folder / "a.txt", "title = \"A\"\n");
   CHECK_THROWS_WITH_AS(describe_file(folder / "a.txt"), doctest::Contains("a.txt"), IoError);
   CHECK_THROWS_AS(describe_file(folder / "absent"), IoError);
   CHECK_THROWS_AS(describe_file(folder.path()), IoError);

@@ -7,6 +7,7 @@
 namespace hash_test {
 
 using namespace keeler;
+using namespace keeler::io;
 
 TEST_CASE("the hash of nothing is XXH3's published one") {
   CHECK(Hash().hex() == "99aa06d3014798d86001c324468d497f"); // XXH3_128bits, length 0, seed 0

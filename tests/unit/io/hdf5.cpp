@@ -12,12 +12,13 @@
 namespace hdf5_test {
 
 using namespace keeler;
+using namespace keeler::io;
 using namespace keeler::test;
 
 namespace {
 
 hdf5::Handle new_file(const std::filesystem::path& path) {
-  return hdf5::create_on(std::make_shared<hdf5::Disk>(std::make_shared<Descriptor>(path, O_RDWR | O_CREAT), 0));
+  return hdf5::create_on(std::make_shared<hdf5::Disk>(std::make_shared<files::Descriptor>(path, O_RDWR | O_CREAT), 0));
 }
 
 } // namespace

@@ -9,12 +9,12 @@
 
 namespace keeler::test {
 
-inline std::vector<std::byte> hdf5_content(const std::function<void(const hdf5::Handle&)>& fill) {
+inline std::vector<std::byte> hdf5_content(const std::function<void(const io::hdf5::Handle&)>& fill) {
   const TemporaryFolder folder;
-  SealedFile out(folder / "a.h5");
+  io::SealedFile out(folder / "a.h5");
   out.write(fill);
   out.finish();
-  std::vector<std::byte> content = load_content(folder / "a.h5").bytes;
+  std::vector<std::byte> content = io::load_content(folder / "a.h5").bytes;
   return content;
 }
 

@@ -12,18 +12,19 @@
 namespace particle_table_test {
 
 using namespace keeler;
+using namespace keeler::io;
 
 namespace {
 
 const std::filesystem::path file = std::filesystem::temp_directory_path() / "keeler-test-table";
 
 ParticleTable table_of(const std::string& text) {
-  write_text(file, text);
+  files::write_text(file, text);
   return read_particle_table(file);
 }
 
 ParticleTable table_of(const std::function<void(const hdf5::Handle&)>& fill) {
-  write_file(file, test::hdf5_content(fill));
+  files::write_file(file, test::hdf5_content(fill));
   return read_particle_table(file);
 }
 

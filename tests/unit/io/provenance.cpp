@@ -7,6 +7,7 @@
 namespace provenance_test {
 
 using namespace keeler;
+using namespace keeler::io;
 
 TEST_CASE("provenance has the program, the machine and the command line") {
   const Provenance provenance = collect_provenance({"keeler", "run", "my scene.toml", "--set", "title=it's"});

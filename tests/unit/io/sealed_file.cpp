@@ -11,6 +11,7 @@
 namespace sealed_file_test {
 
 using namespace keeler;
+using namespace keeler::io;
 using namespace keeler::test;
 
 namespace {

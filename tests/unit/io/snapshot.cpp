@@ -16,6 +16,7 @@
 namespace snapshot_test {
 
 using namespace keeler;
+using namespace keeler::io;
 using namespace keeler::test;
 
 namespace {
@@ -264,7 +265,7 @@ TEST_CASE("a snapshot written in pieces equals that of the whole patch, byte by 
   }
   CHECK_FALSE(std::filesystem::exists(folder / "pieces.hdf"));
   pieces.finish();
-  CHECK(read_file(folder / "pieces.hdf") == read_file(folder / "whole.hdf"));
+  CHECK(files::read_file(folder / "pieces.hdf") == files::read_file(folder / "whole.hdf"));
   CHECK(same_but_velocities(read_snapshot(folder / "pieces.hdf").patch, patch));
   { const SnapshotFile unfinished(folder / "other.hdf", patch, patch.size(), false, meta); }
   CHECK(folder.file_count() == 2);

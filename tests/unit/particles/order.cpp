@@ -11,6 +11,7 @@
 namespace order_test {
 
 using namespace keeler;
+using namespace keeler::particles;
 
 namespace {
 

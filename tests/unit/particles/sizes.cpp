@@ -8,6 +8,7 @@
 namespace sizes_test {
 
 using namespace keeler;
+using namespace keeler::particles;
 
 TEST_CASE("each row of populations has its number of particles, its radius and its density") {
   const SizeLaw law = populations({{2.0, 30, 450.0}, {2.0, 50, 900.0}, {5.0, 20, 1200.0}});

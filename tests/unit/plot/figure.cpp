@@ -8,6 +8,7 @@
 namespace figure_test {
 
 using namespace keeler;
+using namespace keeler::plot;
 
 namespace {
 

@@ -9,6 +9,7 @@
 namespace quantity_test {
 
 using namespace keeler;
+using namespace keeler::quantities;
 
 const Quantity viscosity{"total_viscosity", unit::viscosity, "total", "the sum", Spread::error, Forms::all};
 const Quantity clusters{"clusters.count", unit::none, "clusters", "how many"};

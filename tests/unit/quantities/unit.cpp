@@ -5,6 +5,7 @@
 namespace unit_test {
 
 using namespace keeler;
+using namespace keeler::quantities;
 
 TEST_CASE("velocities and viscosities have three units, all else has one") {
   const PatchUnits units{2.0, 0.25, 3.0}; // r, Ω, G Σ

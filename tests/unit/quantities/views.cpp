@@ -5,6 +5,7 @@
 namespace views_test {
 
 using namespace keeler;
+using namespace keeler::quantities;
 
 Record example() {
   Record mode{{{{"n", unit::none, "n"}, std::uint64_t{1}}, {{"wavelength", unit::metres, "wavelength"}, 50.0}}, {}};

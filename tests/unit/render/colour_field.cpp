@@ -13,6 +13,7 @@
 namespace colour_field_test {
 
 using namespace keeler;
+using namespace keeler::render;
 
 namespace {
 
@@ -70,7 +71,9 @@ TEST_CASE("the map of surface density holds the mass of the patch at any shear o
     Patch patch = test::uniform(box, offset, 5000, 3);
     const std::vector<double> values = field_values(patch, ColourField::density);
     const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-    CHECK(mean == doctest::Approx(surface_density(patch)).epsilon(1e-12)); // the cloud-in-cell weights conserve mass
+    CHECK(
+        mean ==
+        doctest::Approx(diagnostics::surface_density(patch)).epsilon(1e-12)); // the cloud-in-cell weights conserve mass
   }
 }
 

@@ -12,6 +12,7 @@
 namespace movie_test {
 
 using namespace keeler;
+using namespace keeler::render;
 
 namespace {
 

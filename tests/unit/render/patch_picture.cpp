@@ -10,6 +10,7 @@
 namespace patch_picture_test {
 
 using namespace keeler;
+using namespace keeler::render;
 using keeler::test::Picture;
 using keeler::test::TemporaryPng;
 

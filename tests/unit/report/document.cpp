@@ -7,6 +7,7 @@
 namespace document_test {
 
 using namespace keeler;
+using namespace keeler::report;
 using namespace keeler::test;
 
 TEST_CASE("a document says the same in both forms") {
@@ -15,7 +16,7 @@ TEST_CASE("a document says the same in both forms") {
   document.heading("Numbers");
   document.paragraph("Run `keeler` with **care** & N > 1.");
   document.table({{"a", "b"}, {"1", "<2>"}});
-  write_text(folder / "dot.png", "Man"); // "TWFu" in base64
+  files::write_text(folder / "dot.png", "Man"); // "TWFu" in base64
   document.figure(folder.path(), "dot", "A dot.");
   CHECK(document.markdown().find("## Numbers") != std::string::npos);
   CHECK(document.markdown().find("| a | b |\n|---|---|\n| 1 | <2> |") != std::string::npos);

@@ -15,14 +15,15 @@
 namespace contact_log_test {
 
 using namespace keeler;
+using namespace keeler::runs;
 using namespace keeler::test;
 
 namespace {
 
 /// Records all contacts, one call per contact.
-struct Onlooker final : DriftObserver {
-  std::vector<CollisionRecord> records;
-  void collided(const CollisionRecord& record) override { records.push_back(record); }
+struct Onlooker final : collision::DriftObserver {
+  std::vector<collision::CollisionRecord> records;
+  void collided(const collision::CollisionRecord& record) override { records.push_back(record); }
 };
 
 const std::vector<std::string> logged = {"time.end=0.4", "output.collisions.share=1.0", "output.snapshot_every=0.1",
@@ -45,8 +46,8 @@ void run(const std::filesystem::path& folder, const std::vector<std::string>& ov
   start_run(small_scene(overrides), in(folder), requests);
 }
 
-std::vector<ContactRow> rows_in(const std::filesystem::path& folder) {
-  return read_contacts(RunFolder(folder).contacts(0)).rows;
+std::vector<io::ContactRow> rows_in(const std::filesystem::path& folder) {
+  return io::read_contacts(RunFolder(folder).contacts(0)).rows;
 }
 
 ContactLog new_log(const RunFolder& folder, const Scene& scene, std::int64_t file_rows = 10,
@@ -55,10 +56,10 @@ ContactLog new_log(const RunFolder& folder, const Scene& scene, std::int64_t fil
 }
 
 // Returns all rows of a log of small files.
-std::vector<ContactRow> table_in(const RunFolder& folder, std::int64_t file_rows) {
-  std::vector<ContactRow> all;
+std::vector<io::ContactRow> table_in(const RunFolder& folder, std::int64_t file_rows) {
+  std::vector<io::ContactRow> all;
   for (std::int64_t number = 0; std::filesystem::exists(folder.contacts(number)); ++number) {
-    const ContactFile file = read_contacts(folder.contacts(number));
+    const io::ContactFile file = io::read_contacts(folder.contacts(number));
     CHECK(file.meta.first_row == number * file_rows);
     CHECK(static_cast<std::int64_t>(file.rows.size()) <= file_rows);
     all.insert(all.end(), file.rows.begin(), file.rows.end());
@@ -86,14 +87,14 @@ TEST_CASE("the log holds what an observer sees, in SI") {
     steps.resize(onlooker.records.size(), k);
   }
   log.write_all();
-  const std::vector<ContactRow> rows = table_in(folder, 10);
+  const std::vector<io::ContactRow> rows = table_in(folder, 10);
   REQUIRE(rows.size() == onlooker.records.size());
   REQUIRE(rows.size() > 30);
   CHECK(log.counters().rows == static_cast<std::int64_t>(rows.size()));
   const Patch patch = one.patch();
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    const CollisionRecord& r = onlooker.records[k];
-    const ContactRow& row = rows[k];
+    const collision::CollisionRecord& r = onlooker.records[k];
+    const io::ContactRow& row = rows[k];
     CHECK(row.step == steps[k]);
     CHECK(row.time_orbits >= static_cast<double>(row.step) * h * (1 - 1e-12));
     CHECK(row.time_orbits <= static_cast<double>(row.step + 1) * h * (1 + 1e-12));
@@ -136,7 +137,7 @@ TEST_CASE("a bin holds the speeds from its lower edge to below its upper one") {
 }
 
 TEST_CASE("filters keep the contacts that they name, and a share is a share") {
-  CollisionRecord record{};
+  collision::CollisionRecord record{};
   record.normal_speed = 10.0;
   record.radius_sum = 2.0;
   CHECK(is_logged({.min_speed = 1e-3}, record, 0.1, 1e-4));
@@ -165,7 +166,7 @@ TEST_CASE("the log of a run does not depend on threads, and the run not on the l
     const auto folder = work / std::to_string(count);
     CHECK(start_run(small_scene(logged), in(folder), requests).state_hash == hash);
     CHECK((rows_in(folder) == rows_in(work / "1")));
-    CHECK(read_text(folder / "impact_speeds.csv") == read_text(work / "1" / "impact_speeds.csv"));
+    CHECK(files::read_text(folder / "impact_speeds.csv") == files::read_text(work / "1" / "impact_speeds.csv"));
   }
   set_threads(before);
   CHECK(rows_in(work / "1").size() > 40);
@@ -173,11 +174,11 @@ TEST_CASE("the log of a run does not depend on threads, and the run not on the l
   run(work / "share", logged_with({"output.collisions.share=0.5"}));
   run(work / "fast", logged_with({"output.collisions.min_speed=1e-4"}));
   std::size_t fast = 0;
-  for (const ContactRow& row : rows_in(work / "1"))
+  for (const io::ContactRow& row : rows_in(work / "1"))
     fast += row.normal_speed >= 1e-4;
   CHECK(rows_in(work / "fast").size() == fast);
   CHECK(rows_in(work / "share").size() < rows_in(work / "1").size());
-  CHECK(read_text(work / "share" / "impact_speeds.csv") == read_text(work / "1" / "impact_speeds.csv"));
+  CHECK(files::read_text(work / "share" / "impact_speeds.csv") == files::read_text(work / "1" / "impact_speeds.csv"));
 }
 
 TEST_CASE("a run that goes on from a checkpoint has the log of a run without a break") {
@@ -194,7 +195,8 @@ TEST_CASE("a run that goes on from a checkpoint has the log of a run without a b
                              std::filesystem::copy_options::overwrite_existing);
   resume_run(options, requests);
   CHECK((rows_in(work / "half") == rows_in(work / "whole")));
-  CHECK(read_text(work / "half" / "impact_speeds.csv") == read_text(work / "whole" / "impact_speeds.csv"));
+  CHECK(files::read_text(work / "half" / "impact_speeds.csv") ==
+        files::read_text(work / "whole" / "impact_speeds.csv"));
 }
 
 TEST_CASE("files of a log are cut back to the rows of a checkpoint, wherever that falls") {
@@ -221,7 +223,7 @@ TEST_CASE("files of a log are cut back to the rows of a checkpoint, wherever tha
     evolve(before, first, 15);
     before.write_all();
     const LogResume checkpoint{before.counters(), -1};
-    const SimulationState state = first.state();
+    const simulation::SimulationState state = first.state();
     evolve(before, first, 25); // lost by a kill
     before.write_all();
 
@@ -230,7 +232,7 @@ TEST_CASE("files of a log are cut back to the rows of a checkpoint, wherever tha
     CHECK(after.lost_rows() == 0);
     evolve(after, second, 30);
     after.write_all();
-    const std::vector<ContactRow> rows = table_in(whole, file_rows);
+    const std::vector<io::ContactRow> rows = table_in(whole, file_rows);
     CHECK(rows.size() > 15);
     CHECK((table_in(cut, file_rows) == rows));
   }
@@ -243,10 +245,10 @@ TEST_CASE("a log whose last file is gone or damaged goes on with a gap, and says
     run(folder, logged_with({"time.end=0.2"}));
     const auto lost = static_cast<std::int64_t>(rows_in(folder).size());
     const auto file = folder / "collisions_000000.h5";
-    const std::string content = read_text(file);
+    const std::string content = files::read_text(file);
     std::filesystem::remove(file);
     if (!gone)
-      write_text(file, content.substr(0, content.size() / 2));
+      files::write_text(file, content.substr(0, content.size() / 2));
     RunRequests requests;
     RunOptions options = in(folder);
     options.until_orbits = 0.4;
@@ -254,8 +256,8 @@ TEST_CASE("a log whose last file is gone or damaged goes on with a gap, and says
     options.notice = [&](const std::string& line) { said += line; };
     resume_run(options, requests);
     CHECK(said.find("rows of the log of contacts are missing or damaged") != said.npos);
-    CHECK(read_contacts(file).meta.first_row == lost);
-    CHECK(!read_contacts(file).rows.empty());
+    CHECK(io::read_contacts(file).meta.first_row == lost);
+    CHECK(!io::read_contacts(file).rows.empty());
   }
 }
 

@@ -12,18 +12,18 @@
 
 namespace keeler::test {
 
-inline void check_documented(const std::vector<Quantity>& quantities, const std::string& page) {
+inline void check_documented(const std::vector<quantities::Quantity>& quantities, const std::string& page) {
   std::set<std::string> names;
-  for (const Quantity& quantity : quantities) {
+  for (const quantities::Quantity& quantity : quantities) {
     CAPTURE(quantity.name);
     CHECK(!quantity.meaning.empty());
     CHECK(quantity.meaning.find('|') == std::string::npos); // it would end a cell of the table
-    for (const UnitSystem system : quantity.systems())
+    for (const quantities::UnitSystem system : quantity.systems())
       CHECK(names.insert(quantity.full_name(system)).second);
   }
   const std::string table = markdown_of(quantities);
   INFO(page << " must hold this table:\n" << table);
-  CHECK(read_text(KEELER_SOURCE_DIR "/" + page).find(table) != std::string::npos);
+  CHECK(files::read_text(KEELER_SOURCE_DIR "/" + page).find(table) != std::string::npos);
 }
 
 } // namespace keeler::test

@@ -16,6 +16,7 @@
 namespace invariants_test {
 
 using namespace keeler;
+using namespace keeler::runs;
 using namespace keeler::test;
 
 namespace {
@@ -37,11 +38,13 @@ struct Stepped {
   }
 
   const Frequencies& frequencies() const { return scene.planet.frequencies; }
-  ParticleMeans means_of(const SimulationState& state) const {
-    return particle_means(state.particles, frequencies(), -0.5 * state.step_length);
+  diagnostics::ParticleMeans means_of(const simulation::SimulationState& state) const {
+    return diagnostics::particle_means(state.particles, frequencies(), -0.5 * state.step_length);
   }
-  std::string sums(const SimulationState& state) const { return fault_of_sums(before, state, frequencies()); }
-  std::string energy(const SimulationState& state) const {
+  std::string sums(const simulation::SimulationState& state) const {
+    return fault_of_sums(before, state, frequencies());
+  }
+  std::string energy(const simulation::SimulationState& state) const {
     return fault_of_energy(before, state, means_of(state), frequencies());
   }
 };
@@ -75,7 +78,7 @@ TEST_CASE("all invariants hold at each step of sound runs, and to look at them c
         plain.advance();
       }
     }
-    const SimulationState& state = checked.state();
+    const simulation::SimulationState& state = checked.state();
     contacts += state.collisions.fast + state.collisions.slow;
     CHECK(state_hash(state, scene) == state_hash(plain.state(), scene));
     CHECK(fault_of_budget(state, checked.means(), scene.planet.frequencies).empty());
@@ -85,7 +88,7 @@ TEST_CASE("all invariants hold at each step of sound runs, and to look at them c
 
 TEST_CASE("a number that is not finite is told, with its particle") {
   const Stepped run({"collisions.friction.tangential_restitution=0.6"});
-  SimulationState state = run.simulation.state();
+  simulation::SimulationState state = run.simulation.state();
   CHECK(fault_of_numbers(state).empty());
   state.particles.bodies[40].elements.guiding_y = not_a_number;
   const std::string id = std::to_string(state.particles.ids[40]);
@@ -102,7 +105,7 @@ TEST_CASE("a number that is not finite is told, with its particle") {
 TEST_CASE("particles that go, or change their size, are told") {
   const Stepped run;
   CHECK(fault_of_particles(run.before.state, run.simulation.state()).empty());
-  SimulationState state = run.simulation.state();
+  simulation::SimulationState state = run.simulation.state();
   state.particles.bodies[3].mass *= 1.0 + 1e-15;
   CHECK(fault_of_particles(run.before.state, state) ==
         "particle " + std::to_string(state.particles.ids[3]) + " has another radius or mass than before");
@@ -130,7 +133,7 @@ TEST_CASE("a velocity that one particle alone has got is told by the sums and by
     CHECK(run.sums(run.simulation.state()).empty());
     CHECK(run.energy(run.simulation.state()).empty());
     for (const Vec3& dv : {Vec3(1e-3, 0.0, 0.0), Vec3(0.0, 1e-3, 0.0), Vec3(0.0, 0.0, 1e-3)}) {
-      SimulationState state = run.simulation.state();
+      simulation::SimulationState state = run.simulation.state();
       kick(state.particles.bodies[11].elements, dv, run.frequencies(), Rotation());
       CHECK(run.sums(state).find("collisions changed the sum of m ") == 0);
       CHECK(run.energy(state).find("the energy budget of the step does not close") == 0);
@@ -140,7 +143,7 @@ TEST_CASE("a velocity that one particle alone has got is told by the sums and by
 
 TEST_CASE("a contact whose energy is booked twice, or never, is told by the energy alone") {
   const Stepped run;
-  SimulationState state = run.simulation.state();
+  simulation::SimulationState state = run.simulation.state();
   state.collisions.energy_lost *= 1.0 + 1e-6;
   CHECK(run.sums(state).empty());
   CHECK_FALSE(run.energy(state).empty());
@@ -151,7 +154,7 @@ TEST_CASE("a contact whose energy is booked twice, or never, is told by the ener
 
 TEST_CASE("wraps with a wrong shift, and kicks of half the size, are told by the sums") {
   const Stepped run({"constant_acceleration.azimuthal=1e-9"});
-  SimulationState state = run.simulation.state();
+  simulation::SimulationState state = run.simulation.state();
   Elements& wrapped = state.particles.bodies[11].elements;
   wrapped = state.box.image_of(wrapped, {1, 0}, state.epoch_offset()); // another image: equivalent
   CHECK(run.sums(state).empty());
@@ -167,8 +170,8 @@ TEST_CASE("forces that err by more than the solver may are told, with the partic
   for (const char* solver : {"tree", "fft", "direct"}) {
     CAPTURE(solver);
     const Stepped run({std::string("gravity.solver=") + solver});
-    SimulationState state = run.simulation.state();
-    const Boundary boundary = run.simulation.boundary();
+    simulation::SimulationState state = run.simulation.state();
+    const forces::Boundary boundary = run.simulation.boundary();
     CHECK(fault_of_forces(run.scene, boundary, state).empty());
     for (Vec3& acceleration : state.forces[0].accelerations)
       acceleration *= 1.0 + 1.3 * forces_factor * force_tolerance(*run.scene.gravity);
@@ -182,7 +185,7 @@ TEST_CASE("forces that err by more than the solver may are told, with the partic
 }
 
 TEST_CASE("a neighbour that was missed is told") {
-  NeighbourAudit audit;
+  collision::NeighbourAudit audit;
   CHECK(fault_of_neighbours(audit).empty());
   audit.missed = {4, 17, {1, -1}, 1.25, false};
   CHECK(

@@ -21,6 +21,7 @@
 namespace key_ranges_test {
 
 using namespace keeler;
+using namespace keeler::runs;
 using namespace keeler::test;
 
 namespace {
@@ -59,7 +60,7 @@ bool is_number(const Key& key) {
 
 void put(Tables& tables, const Key& key, const std::string& value) {
   for (const std::string& other : key.alternatives)
-    tables[find_key(other)->section()].erase(find_key(other)->name());
+    tables[scene::find_key(other)->section()].erase(scene::find_key(other)->name());
   tables[key.section()][key.name()] = value;
 }
 
@@ -67,9 +68,9 @@ void put(Tables& tables, const Key& key, const std::string& value) {
 void put_around(Tables& tables, const Key& key) {
   const KeyCondition& needs = key.only_with;
   if (!needs.key.empty()) {
-    const Key& other = *find_key(needs.key);
+    const Key& other = *scene::find_key(needs.key);
     put(tables, other, needs.values.empty() ? good_value(other) : fmt::format("\"{}\"", needs.values.front()));
-    for (const Key& sibling : scene_keys()) // of a law
+    for (const Key& sibling : scene::scene_keys()) // of a law
       if (sibling.only_with.key == needs.key && sibling.path != key.path && !needs.values.empty()) {
         tables[sibling.section()].erase(sibling.name());
         if (sibling.only_with.values == needs.values && sibling.fallback.empty())
@@ -77,11 +78,12 @@ void put_around(Tables& tables, const Key& key) {
       }
   }
   std::map<std::string, std::string>& own = tables[key.section()];
-  for (const Key& sibling : scene_keys()) {
+  for (const Key& sibling : scene::scene_keys()) {
     const bool given = own.contains(sibling.name()) || sibling.path == key.path || !sibling.fallback.empty();
     bool instead = false;
     for (const std::string& other : sibling.alternatives)
-      instead = instead || other == key.path || tables[find_key(other)->section()].contains(find_key(other)->name());
+      instead = instead || other == key.path ||
+                tables[scene::find_key(other)->section()].contains(scene::find_key(other)->name());
     if (sibling.section() == key.section() && sibling.only_with.key.empty() && !given && !instead)
       own[sibling.name()] = good_value(sibling);
   }
@@ -96,7 +98,7 @@ Tables scene_around(const Key& key, const std::string& snapshot) {
                    {"time", {{"step", "1e-3"}, {"end", "2e-3"}}}};
   put_around(tables, key);
   if (key.path == "box.size_in_wavelengths")
-    put(tables, *find_key("particles.optical_depth"), "0.1");
+    put(tables, *scene::find_key("particles.optical_depth"), "0.1");
   if (key.path == "particles.modes.outward" || key.path == "particles.modes.inward" ||
       key.path == "particles.modes.standing")
     tables.erase("particles.streamlines");
@@ -112,7 +114,7 @@ std::string text_of(const Tables& tables) {
   std::string text;
   for (const auto& [table, keys] : tables)
     if (!keys.empty() || table == "gravity") {
-      text += table.empty() ? "" : find_section(table)->header() + "\n";
+      text += table.empty() ? "" : scene::find_section(table)->header() + "\n";
       for (const auto& [name, value] : keys)
         text += fmt::format("{} = {}\n", name, value);
     }
@@ -178,7 +180,7 @@ std::string outcome(const std::string& text, const std::filesystem::path& folder
 } // namespace
 
 TEST_CASE("every number has both ends of a range") {
-  for (const Key& key : scene_keys())
+  for (const Key& key : scene::scene_keys())
     if (is_number(key)) {
       CAPTURE(key.path);
       CHECK(std::isfinite(key.range.low));
@@ -190,10 +192,10 @@ TEST_CASE("an absurd number is refused with its place, or two steps go well") {
   set_threads(1); // hundreds of very short runs
   const TemporaryFolder work;
   const std::string snapshot = (work / "start.hdf").string();
-  const Key& size = *find_key("box.size");
+  const Key& size = *scene::find_key("box.size");
   const Scene fresh = parse_scene(text_of(scene_around(size, snapshot)), "s.toml");
-  write_snapshot(snapshot, initial_patch(fresh), {fresh.resolved, {}});
-  for (const Key& key : scene_keys()) {
+  io::write_snapshot(snapshot, initial_patch(fresh), {fresh.resolved, {}});
+  for (const Key& key : scene::scene_keys()) {
     if (!is_number(key))
       continue;
     Tables tables = scene_around(key, snapshot);

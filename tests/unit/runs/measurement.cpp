@@ -15,6 +15,7 @@
 namespace measurement_test {
 
 using namespace keeler;
+using namespace keeler::runs;
 
 TEST_CASE("every measured number has names of its own and says what it is; the manual has the table") {
   test::check_documented(measured_quantities(), "docs/manual/numbers.md");

@@ -18,6 +18,7 @@
 namespace moonlets_test {
 
 using namespace keeler;
+using namespace keeler::runs;
 using namespace keeler::test;
 
 namespace {
@@ -112,10 +113,10 @@ TEST_CASE("moonlets.csv has a row a moonlet for each row of the series, the same
   options.folder = work / "resumed";
   options.until_orbits = 0.3;
   CHECK(resume_run(options, requests).state_hash == hash);
-  const std::string text = read_text(work / "straight" / "moonlets.csv");
-  CHECK(read_text(work / "resumed" / "moonlets.csv") == text);
-  const SeriesTable table = read_series(work / "straight" / "moonlets.csv");
-  CHECK(table.rows() == 2 * read_series(work / "straight" / "series.csv").rows());
+  const std::string text = files::read_text(work / "straight" / "moonlets.csv");
+  CHECK(files::read_text(work / "resumed" / "moonlets.csv") == text);
+  const io::SeriesTable table = io::read_series(work / "straight" / "moonlets.csv");
+  CHECK(table.rows() == 2 * io::read_series(work / "straight" / "series.csv").rows());
   CHECK(table.of("id")[2] == 100.0);
   CHECK(table.of("id")[3] == 101.0);
   run("none", {"time.end=0.1"});
@@ -127,7 +128,7 @@ TEST_CASE("docs/formats.md has the table of moonlets.csv") {
   for (const MoonletColumn& column : moonlet_columns())
     table += std::string("| `") + column.name + "` | " + column.unit + " | " + column.meaning + " |\n";
   INFO("docs/formats.md must hold this table:\n" << table);
-  CHECK(read_text(KEELER_SOURCE_DIR "/docs/formats.md").find(table) != std::string::npos);
+  CHECK(files::read_text(KEELER_SOURCE_DIR "/docs/formats.md").find(table) != std::string::npos);
 }
 
 } // namespace moonlets_test

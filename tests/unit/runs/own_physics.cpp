@@ -24,6 +24,7 @@
 namespace own_physics_test {
 
 using namespace keeler;
+using namespace keeler::runs;
 using namespace keeler::test;
 
 namespace {
@@ -40,7 +41,7 @@ time = { step = 1e-3, end = 1.0 }
 )";
 
 Scene dragged(const std::vector<std::string>& more = {}) {
-  return small_scene(joined({"gas_drag.rate=0.3", "output.series_every=0.1"}, more));
+  return small_scene(quantities::joined({"gas_drag.rate=0.3", "output.series_every=0.1"}, more));
 }
 
 // Starts the run of a folder, or continues it, until an orbit.
@@ -51,7 +52,7 @@ RunResult run(const std::filesystem::path& folder, const std::vector<std::string
   options.until_orbits = until;
   const bool begun = std::filesystem::exists(folder);
   return begun ? resume_run(options, requests)
-               : start_run(dragged(joined(more, {"time.end=" + std::to_string(until)})), options, requests);
+               : start_run(dragged(quantities::joined(more, {"time.end=" + std::to_string(until)})), options, requests);
 }
 
 template<class Call> std::string fault_of(const Call& call) {
@@ -77,7 +78,7 @@ TEST_CASE("an own force acts as its formula says, and its work is booked under i
     simulation.advance();
   const Body& body = simulation.state().particles.bodies[0];
   CHECK(body.elements.eccentricity() == doctest::Approx(20.0 * std::exp(-0.5)).epsilon(1e-3));
-  const SimulationState& state = simulation.state();
+  const simulation::SimulationState& state = simulation.state();
   REQUIRE(state.forces.size() == 1);
   CHECK(state.forces[0].name == "gas_drag");
   CHECK(state.forces[0].work < 0.0);
@@ -94,9 +95,9 @@ TEST_CASE("a run with an own force goes on from its checkpoint bit for bit, besi
     const std::filesystem::path half = work / (std::string("half") + every), whole = work / (std::string("w") + every);
     run(half, {every}, 0.2);
     CHECK(run(half, {every}, 0.4).state_hash == run(whole, {every}, 0.4).state_hash);
-    CHECK(read_text(half / "series.csv") == read_text(whole / "series.csv"));
-    const SimulationState resumed = load_newest_checkpoint(half, {}).state,
-                          straight = load_newest_checkpoint(whole, {}).state;
+    CHECK(files::read_text(half / "series.csv") == files::read_text(whole / "series.csv"));
+    const simulation::SimulationState resumed = load_newest_checkpoint(half, {}).state,
+                                      straight = load_newest_checkpoint(whole, {}).state;
     CHECK(resumed.forces[1].work == straight.forces[1].work);
     CHECK(resumed.forces[1].azimuthal_gain == straight.forces[1].azimuthal_gain);
   }
@@ -104,7 +105,7 @@ TEST_CASE("a run with an own force goes on from its checkpoint bit for bit, besi
 
 TEST_CASE("the keys of own physics are checked, listed and stored as all others, and those of a force are hashed") {
   add_own_physics();
-  const std::string listed = describe_keys(false);
+  const std::string listed = scene::describe_keys(false);
   for (const char* key :
        {"gas_drag.rate", "particles.sizes.lowest", "particles.start.law", "particles.start.eccentricity"})
     CHECK(has(listed, key));
@@ -117,7 +118,7 @@ TEST_CASE("the keys of own physics are checked, listed and stored as all others,
   const Simulation simulation(scene, initial_patch(scene));
   const std::string hash = state_hash(simulation.state(), scene);
   CHECK(hash != state_hash(simulation.state(), dragged({"gas_drag.rate=0.2"})));
-  const Scene again = parse_stored_scene(scene.resolved, "stored");
+  const Scene again = scene::parse_stored_scene(scene.resolved, "stored");
   CHECK(hash == state_hash(simulation.state(), again));
   CHECK_FALSE(has(parse_scene(one_particle, "test scene").motion, "particles.start"));
 }
@@ -138,7 +139,7 @@ particles = { optical_depth = 0.5, density = 900.0, sizes = { law = "uniform", l
 time.end = 1.0
 )",
                                   "test scene");
-  const SizeLaw& law = scene.particles.sizes;
+  const particles::SizeLaw& law = scene.particles.sizes;
   const std::vector<double> radii = draw_radii(law, 20000, 1);
   for (const int k : {1, 2, 3, 6}) {
     const double mean = std::accumulate(radii.begin(), radii.end(), 0.0,
@@ -150,7 +151,7 @@ time.end = 1.0
   CHECK_FALSE(has(scene.motion, "lowest"));
   const Patch patch = initial_patch(scene);
   CHECK(patch.radii == draw_radii(law, patch.size(), scene.particles.seed));
-  SizeLaw wrong = law;
+  particles::SizeLaw wrong = law;
   wrong.mean_power = [](int) { return 100.0; };
   CHECK(has(fault_of([&] { require_consistent(wrong); }), "the root of the mean power 1 is 100 m"));
 }
@@ -198,12 +199,12 @@ TEST_CASE("an own column is in series.csv, and an own quantity in what analyze p
   add_own_physics();
   const TemporaryFolder work;
   run(work / "run", {}, 0.2);
-  const SeriesTable series = read_series(work / "run" / "series.csv");
+  const io::SeriesTable series = io::read_series(work / "run" / "series.csv");
   CHECK(series.names.back() == "gas_work_j");
   CHECK(series.of("gas_work_j").front() == 0.0);
   CHECK(series.of("gas_work_j").back() < 0.0);
   run(work / "plain", {"gas_drag.rate=0"}, 0.1); // the column is only in scenes with gas
-  CHECK(read_series(work / "plain" / "series.csv").find("gas_work_j") == nullptr);
+  CHECK(io::read_series(work / "plain" / "series.csv").find("gas_work_j") == nullptr);
 
   const auto json = nlohmann::json::parse(analyze_json(work / "run"));
   const Patch last = load_newest_patch(work / "run").patches.front();
@@ -224,18 +225,18 @@ TEST_CASE("a name that is taken is refused, and so is what comes too late") {
     const std::string fault = fault_of([&] { add_force(gas_drag(name.c_str())); });
     return has(fault, "cannot be called '" + name + "' (scenes and runs use") || has(fault, "already");
   };
-  for (const Section& section : scene_sections())
+  for (const config::Section& section : scene::scene_sections())
     CHECK(refused(section.path.substr(0, section.path.find('.'))));
-  for (const Key& key : scene_keys())
+  for (const Key& key : scene::scene_keys())
     CHECK((!key.section().empty() || refused(key.path)));
   CHECK(has(fault_of([] { add_force(gas_drag("late")); }), "it is too late to add the force 'late'"));
 
-  CHECK(has(fault_of([] { add_size_law({"power", {}, nullptr}); }), "there is a size law 'power' already"));
+  CHECK(has(fault_of([] { particles::add_size_law({"power", {}, nullptr}); }), "there is a size law 'power' already"));
   CHECK(has(fault_of([] {
-              add_size_law({"own", {{.path = "min", .example = "1"}}, nullptr});
+              particles::add_size_law({"own", {{.path = "min", .example = "1"}}, nullptr});
             }),
             "the key 'min' of the size law 'own' is in its table already"));
-  CHECK(has(fault_of([] { add_start({"lattice", {}, nullptr}); }), "there is a start 'lattice' already"));
+  CHECK(has(fault_of([] { particles::add_start({"lattice", {}, nullptr}); }), "there is a start 'lattice' already"));
   CHECK(has(fault_of([] {
               add_series_column({"collisions", "1", "", "", nullptr});
             }),

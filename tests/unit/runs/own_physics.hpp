@@ -17,12 +17,12 @@ inline Key number(const char* name, const char* fallback, double high) {
 }
 
 // Gas on circular orbits: −γ c. All epicycles decay as e^(−γ t).
-class GasDrag : public Force {
+class GasDrag : public forces::Force {
 public:
   GasDrag(double rate, std::int64_t every) : rate_(rate), every_(every) {}
   std::int64_t kick_every() const override { return every_; }
 
-  void accelerate(const Boundary& at, std::span<Vec3> accelerations) override {
+  void accelerate(const forces::Boundary& at, std::span<Vec3> accelerations) override {
     const Rotation rotation = at.rotation();
     for (std::size_t k = 0; k < accelerations.size(); ++k)
       accelerations[k] = -rate_ * peculiar_velocity(at.particles.bodies[k].elements, at.frequencies, rotation);
@@ -33,11 +33,11 @@ private:
   std::int64_t every_;
 };
 
-inline ForceEntry gas_drag(const char* name) {
+inline forces::ForceEntry gas_drag(const char* name) {
   return {name,
           {number("rate", "0.1", 10.0),
            {.path = "every", .type = KeyType::integer, .fallback = "1", .range = {.low = 1, .high = 100}}},
-          [](const Parameters& p, const ForceContext&) -> std::unique_ptr<Force> {
+          [](const Parameters& p, const forces::ForceContext&) -> std::unique_ptr<forces::Force> {
             return std::make_unique<GasDrag>(p.number("rate") / two_pi, p.integer("every"));
           },
           [](const Parameters& p, double) {
@@ -46,16 +46,16 @@ inline ForceEntry gas_drag(const char* name) {
           }};
 }
 
-inline SizeLaw uniform_sizes(const Parameters& p) {
+inline particles::SizeLaw uniform_sizes(const Parameters& p) {
   const double a = p.number("lowest"), b = p.number("highest");
-  SizeLaw law{a, b, 0, {}, {}};
+  particles::SizeLaw law{a, b, 0, {}, {}};
   law.mean_power = [a, b](int k) { return (std::pow(b, k + 1) - std::pow(a, k + 1)) / ((k + 1) * (b - a)); };
   law.radius = [a, b](double u, std::size_t) { return a + u * (b - a); };
   return law;
 }
 
 // Ten metres from guiding centre to guiding centre, six a row, all at the innermost point of their epicycles.
-inline std::vector<State> lattice(const Parameters& p, const StartRequest& request) {
+inline std::vector<State> lattice(const Parameters& p, const particles::StartRequest& request) {
   std::vector<State> states;
   const double e = p.number("eccentricity");
   const auto missing = static_cast<std::size_t>(p.number("missing"));
@@ -87,13 +87,15 @@ inline bool has_gas(const Scene& scene) {
 inline void add_own_physics() {
   static const bool added = [] {
     add_force(gas_drag("gas_drag"));
-    add_size_law({"uniform", {number("lowest", "0.5", 10.0), number("highest", "1.0", 10.0)}, uniform_sizes});
-    add_start({"lattice",
-               {number("eccentricity", "0.0", 100.0), number("shift", "0.0", 100.0), number("missing", "0.0", 9.0)},
-               lattice});
-    add_series_column(
+    particles::add_size_law(
+        {"uniform", {number("lowest", "0.5", 10.0), number("highest", "1.0", 10.0)}, uniform_sizes});
+    particles::add_start(
+        {"lattice",
+         {number("eccentricity", "0.0", 100.0), number("shift", "0.0", 100.0), number("missing", "0.0", 9.0)},
+         lattice});
+    runs::add_series_column(
         {"gas_work_j", "J", "Energy since the start: work of the gas", "work of the gas", gas_work, has_gas});
-    add_quantity({"mean_height_m", "m", "mean height", "mean of |z|", mean_height});
+    runs::add_quantity({"mean_height_m", "m", "mean height", "mean of |z|", mean_height});
     return true;
   }();
   (void)added;

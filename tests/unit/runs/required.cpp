@@ -24,6 +24,7 @@
 namespace required_test {
 
 using namespace keeler;
+using namespace keeler::runs;
 using namespace keeler::test;
 
 namespace {
@@ -46,11 +47,11 @@ struct Held {
   std::size_t particles = 0;
   double all = 0.0;   // bytes per particle of the simulation
   double drift = 0.0; // part of it reported by the drift, including the particles
-  TimeSplit split;
+  simulation::TimeSplit split;
   std::size_t forces = 0;
 };
 
-Held held_by(const Scene& scene, DriftObserver* observer = nullptr) {
+Held held_by(const Scene& scene, collision::DriftObserver* observer = nullptr) {
   const Patch start = initial_patch(scene);
   const std::int64_t before = bytes_held;
   Simulation simulation(scene, start);
@@ -63,11 +64,11 @@ Held held_by(const Scene& scene, DriftObserver* observer = nullptr) {
           simulation.state().forces.capacity()};
 }
 
-struct TakesRecords final : DriftObserver {
+struct TakesRecords final : collision::DriftObserver {
   std::size_t count = 0;
   bool wants_events() const override { return false; }
   bool wants_records() const override { return true; }
-  void recorded(std::span<const CollisionRecord> records) override { count += records.size(); }
+  void recorded(std::span<const collision::CollisionRecord> records) override { count += records.size(); }
 };
 
 constexpr std::size_t many = 20000;
@@ -101,9 +102,9 @@ TEST_CASE("records of contacts are held for whom asks, and for nobody else") {
   const Held recorded = held_by(bare_scene(many), &observer);
   CHECK(observer.count > many / 4);
   CHECK(recorded.all - recorded.drift > 2.0 * tolerance);
-  struct Idle final : DriftObserver {
+  struct Idle final : collision::DriftObserver {
     bool wants_events() const override { return false; }
-    void recorded(std::span<const CollisionRecord>) override { FAIL("nobody asked"); }
+    void recorded(std::span<const collision::CollisionRecord>) override { FAIL("nobody asked"); }
   } idle;
   const Held unrecorded = held_by(bare_scene(many), &idle);
   CHECK(std::fabs(unrecorded.all - unrecorded.drift) < tolerance);
@@ -156,7 +157,7 @@ TEST_CASE("a run of a scene that asks for nothing more spends no time on it and 
   RunOptions options;
   options.folder = folder;
   start_run(bare_scene(500), options, requests);
-  const nlohmann::json summary = nlohmann::json::parse(read_text(folder / "summary.json"));
+  const nlohmann::json summary = nlohmann::json::parse(files::read_text(folder / "summary.json"));
   for (const char* const part : {"gravity_s", "stresses_s", "contacts_s", "force_checks_s"}) {
     CAPTURE(part);
     CHECK(summary["split"][part] == 0.0);

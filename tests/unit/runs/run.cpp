@@ -14,6 +14,7 @@
 namespace run_test {
 
 using namespace keeler;
+using namespace keeler::runs;
 using namespace keeler::test;
 
 namespace {
@@ -27,7 +28,7 @@ RunResult run(const std::filesystem::path& folder, const std::vector<std::string
 
 // The first column of series.csv.
 std::vector<int> steps_in(const std::filesystem::path& series) {
-  std::istringstream text(read_text(series));
+  std::istringstream text(files::read_text(series));
   std::vector<int> steps;
   std::string line;
   std::getline(text, line); // the header
@@ -45,7 +46,7 @@ struct FileState {
 std::map<std::string, FileState> files_in(const std::filesystem::path& folder) {
   std::map<std::string, FileState> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
-    files[entry.path().filename().string()] = {entry.last_write_time(), read_text(entry.path())};
+    files[entry.path().filename().string()] = {entry.last_write_time(), files::read_text(entry.path())};
   return files;
 }
 
@@ -64,7 +65,7 @@ TEST_CASE("rows of the series stand at the steps that the scene asks for") {
 TEST_CASE("checkpoints come by the step and by the clock, and the clock changes no state") {
   const TemporaryFolder work;
   const auto number = [](const std::filesystem::path& folder) {
-    return list_checkpoints(folder).front().filename().string();
+    return io::list_checkpoints(folder).front().filename().string();
   };
   const std::string hash = run(work / "none", {"time.end=0.1", "output.checkpoint_every_minutes=0"}).state_hash;
   CHECK(number(work / "none") == "checkpoint_000000.h5"); // the one at the end

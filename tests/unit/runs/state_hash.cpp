@@ -23,11 +23,12 @@
 namespace state_hash_test {
 
 using namespace keeler;
+using namespace keeler::runs;
 using namespace keeler::test;
 
 namespace {
 
-SimulationState evolved(const Scene& scene, int steps) {
+simulation::SimulationState evolved(const Scene& scene, int steps) {
   Simulation simulation(scene, initial_patch(scene));
   for (int k = 0; k < steps; ++k)
     simulation.advance();
@@ -38,11 +39,11 @@ SimulationState evolved(const Scene& scene, int steps) {
 
 TEST_CASE("the hash sees the state and the physics, not memory order, schedules or counters") {
   const Scene scene = small_scene();
-  const SimulationState state = evolved(scene, 5);
+  const simulation::SimulationState state = evolved(scene, 5);
   const std::string hash = state_hash(state, scene);
   CHECK(hash.size() == 32);
 
-  SimulationState reversed = state;
+  simulation::SimulationState reversed = state;
   std::reverse(reversed.particles.bodies.begin(), reversed.particles.bodies.end());
   std::reverse(reversed.particles.ids.begin(), reversed.particles.ids.end());
   reversed.collisions.fast += 7;
@@ -52,10 +53,10 @@ TEST_CASE("the hash sees the state and the physics, not memory order, schedules 
   later.title = "another";
   CHECK(state_hash(reversed, later) == hash);
 
-  SimulationState moved = state;
+  simulation::SimulationState moved = state;
   moved.particles.bodies[3].elements.e_cos = std::nextafter(moved.particles.bodies[3].elements.e_cos, 1.0);
   CHECK(state_hash(moved, scene) != hash);
-  SimulationState stepped = state;
+  simulation::SimulationState stepped = state;
   ++stepped.step;
   CHECK(state_hash(stepped, scene) != hash);
 }
@@ -126,10 +127,10 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
                                           "start.keep",
                                           "start.keep_seed"};
   const Scene scene = small_scene();
-  const SimulationState state = evolved(scene, 2);
+  const simulation::SimulationState state = evolved(scene, 2);
   const std::string hash = state_hash(state, scene);
   std::size_t seen = 0;
-  for (const Key& key : scene_keys()) {
+  for (const Key& key : scene::scene_keys()) {
     const auto other = others.find(key.path);
     if (other == others.end()) { // cannot be combined with the other keys of this scene
       CHECK((needless.count(key.path) == 1 || key.section() == "particles.streamlines" ||
@@ -155,7 +156,7 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
 
 TEST_CASE("the hash sees the spins of rough particles") {
   const Scene scene = small_scene({"collisions.friction.tangential_restitution=0.5"});
-  SimulationState state = evolved(scene, 5);
+  simulation::SimulationState state = evolved(scene, 5);
   REQUIRE(state.particles.spins.size() == 100);
   const std::string hash = state_hash(state, scene);
   state.particles.spins[7].x() = std::nextafter(state.particles.spins[7].x(), 9.0);
@@ -165,7 +166,7 @@ TEST_CASE("the hash sees the spins of rough particles") {
 TEST_CASE("the hash sees a satellite and its mass") {
   const auto hash_of = [](const std::string& satellite) {
     const Scene scene = small_scene({"satellite=" + satellite});
-    return state_hash(SimulationState(scene), scene);
+    return state_hash(simulation::SimulationState(scene), scene);
   };
   CHECK(hash_of("{ mass = 1e9, distance = 300, passage = 1 }") !=
         hash_of("{ mass = 2e9, distance = 300, passage = 1 }"));
@@ -179,7 +180,7 @@ TEST_CASE("the hash sees the rows of a table of restitution, not the file that t
   std::ofstream(folder / "a.txt") << "# m/s  coefficient\n0.01 0.5\n0.1, 0.25\n";
   const auto hash_of = [&](const std::string& table) {
     const Scene scene = small_scene({"collisions.restitution={law=\"table\", table=" + table + "}"});
-    return state_hash(SimulationState(scene), scene);
+    return state_hash(simulation::SimulationState(scene), scene);
   };
   const std::string hash = hash_of("[[0.01, 0.5], [0.1, 0.25]]");
   CHECK(hash_of("\"" + (folder / "a.txt").string() + "\"") == hash);
@@ -187,7 +188,7 @@ TEST_CASE("the hash sees the rows of a table of restitution, not the file that t
   const Scene from_file =
       small_scene({"collisions.restitution={law=\"table\", table=\"" + (folder / "a.txt").string() + "\"}"});
   std::filesystem::remove_all(folder);
-  const Scene stored = parse_stored_scene(from_file.resolved, "stored"); // goes on without the file
+  const Scene stored = scene::parse_stored_scene(from_file.resolved, "stored"); // goes on without the file
   CHECK(stored.collisions.restitution({.speed = 0.1}) == 0.25);
   CHECK(stored.motion == from_file.motion);
 }
@@ -212,8 +213,8 @@ TEST_CASE("the field table holds all that a run needs to go on to the bit") {
   };
   Simulation straight(scene, initial_patch(scene));
   steps(straight, half_way);
-  SimulationState half = straight.state();
-  SimulationState restored(scene); // filled through the table alone, as a checkpoint is read
+  simulation::SimulationState half = straight.state();
+  simulation::SimulationState restored(scene); // filled through the table alone, as a checkpoint is read
   FieldTable from = half.fields(), into = restored.fields();
   for (std::size_t k = 0; k < from.fields().size(); ++k) {
     const Field &source = from.fields()[k], &target = into.fields()[k];

@@ -14,6 +14,7 @@
 namespace summary_test {
 
 using namespace keeler;
+using namespace keeler::runs;
 
 TEST_CASE("every number of a summary has a name of its own and says what it is; the manual has the table") {
   test::check_documented(summary_quantities(), "docs/manual/commands.md");
@@ -34,10 +35,10 @@ TEST_CASE("a summary that is read is the one that the run returned") {
 TEST_CASE("what is no summary is refused") {
   const test::TemporaryFolder work;
   for (const char* const text : {"{", "[1]", R"({"split": 3})", R"({"wall_s": "long"})"}) {
-    write_text(work / "summary.json", text);
+    files::write_text(work / "summary.json", text);
     CHECK_THROWS_AS(read_summary(work.path()), IoError);
   }
-  write_text(work / "summary.json", R"({"wall_s": 3.5, "energy_balance": null})"); // of another version
+  files::write_text(work / "summary.json", R"({"wall_s": 3.5, "energy_balance": null})"); // of another version
   CHECK(number_in(read_summary(work.path()), "wall") == 3.5);
 }
 

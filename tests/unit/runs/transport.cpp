@@ -15,22 +15,23 @@
 namespace transport_test {
 
 using namespace keeler;
+using namespace keeler::runs;
 using namespace keeler::test;
 
 namespace {
 
-SeriesTable series_of(const std::vector<std::string>& overrides) {
+io::SeriesTable series_of(const std::vector<std::string>& overrides) {
   const TemporaryFolder work;
   RunRequests requests;
   RunOptions options;
   options.folder = work / "run";
   start_run(small_scene(overrides), options, requests);
-  return read_series(work / "run" / "series.csv");
+  return io::read_series(work / "run" / "series.csv");
 }
 
 // A synthetic series: rates of 3, 2 and 1 m²/s and a loss that balances them, after a transient of two orbits.
-SeriesTable made_up(std::size_t rows, double omega, double mass, double shear) {
-  SeriesTable t;
+io::SeriesTable made_up(std::size_t rows, double omega, double mass, double shear) {
+  io::SeriesTable t;
   t.names = {"step",
              "time_orbits",
              "dispersion_x_m_s",
@@ -66,7 +67,7 @@ SeriesTable made_up(std::size_t rows, double omega, double mass, double shear) {
 
 TEST_CASE("viscosities and balance of a series that is known, after the transient that is found") {
   const double omega = 1.3e-4, mass = 5e6;
-  const SeriesTable series = made_up(150, omega, mass, 1.5);
+  const io::SeriesTable series = made_up(150, omega, mass, 1.5);
   const Transport t = transport(series, {mass, omega, 1.5}, {});
   CHECK(t.since_found);
   CHECK(t.since_orbit > 0.8);
@@ -81,7 +82,7 @@ TEST_CASE("viscosities and balance of a series that is known, after the transien
   CHECK(std::fabs(t.balance->value - 1.0) < 0.01);
 
   CHECK(transport(series, {mass, omega, 1.5}, {.since = {}, .until = 6.0}).until_orbit == doctest::Approx(6.0));
-  SeriesTable former = series; // of a version without these columns
+  io::SeriesTable former = series; // of a version without these columns
   former.names[6] = "momentum_flux_kg_m2_s";
   CHECK(enough_rows(series));
   CHECK_FALSE(enough_rows(former));
@@ -95,10 +96,10 @@ TEST_CASE("viscosities and balance of a series that is known, after the transien
 }
 
 TEST_CASE("a balance whose error is larger than it, or that is nothing over nothing, is none") {
-  const auto balanced = [](const SeriesTable& series) {
+  const auto balanced = [](const io::SeriesTable& series) {
     return transport(series, {1e6, 1.9565e-4, 1.5}, {.since = 2.0, .until = {}}).balance.has_value();
   };
-  SeriesTable series = made_up(80, 1.9565e-4, 1e6, 1.5);
+  io::SeriesTable series = made_up(80, 1.9565e-4, 1e6, 1.5);
   CHECK(balanced(series));
   const auto column = [&](const std::string& name) -> std::vector<double>& {
     return series.columns[static_cast<std::size_t>(std::find(series.names.begin(), series.names.end(), name) -
@@ -119,7 +120,7 @@ TEST_CASE("a balance whose error is larger than it, or that is nothing over noth
 
 TEST_CASE("waves that grow are told, and do not make a steady ring unsteady") {
   const double omega = 1.3e-4, mass = 5e6;
-  SeriesTable series = made_up(150, omega, mass, 1.5);
+  io::SeriesTable series = made_up(150, omega, mass, 1.5);
   const RingScale scale{mass, omega, 1.5};
   CHECK_FALSE(transport(series, scale, {}).waves); // of a version that did not measure them
   const std::vector<double> orbits = series.of("time_orbits"), random = series.of("dispersion_x_m_s");
@@ -154,11 +155,11 @@ TEST_CASE("waves that grow are told, and do not make a steady ring unsteady") {
 }
 
 TEST_CASE("gravity's energy and stress are in the rows that are due, and a scene without gravity has none") {
-  const SeriesTable with = series_of({"time.end=0.4", "output.series_every=0.02", "output.stress_every=0.1"});
+  const io::SeriesTable with = series_of({"time.end=0.4", "output.series_every=0.02", "output.stress_every=0.1"});
   const std::vector<double>& potential = with.of("potential_energy_j");
   CHECK(std::count_if(potential.begin(), potential.end(), [](double v) { return std::isfinite(v); }) == 5);
   CHECK(std::isfinite(potential.front()));
-  const SeriesTable without = series_of({"time.end=0.4", "output.stress_every=0"});
+  const io::SeriesTable without = series_of({"time.end=0.4", "output.stress_every=0"});
   CHECK(without.find("potential_energy_j") == nullptr);
   const Transport t = transport(without, {1.0, 1.9565e-4, 1.5}, {.since = 0.0, .until = {}});
   CHECK_FALSE(t.gravitational); // there was gravity, but its stress was not measured

@@ -9,6 +9,7 @@
 namespace aggregates_test {
 
 using namespace keeler;
+using namespace keeler::scene;
 using namespace keeler::test;
 
 namespace {

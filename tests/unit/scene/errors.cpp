@@ -9,6 +9,7 @@
 namespace errors_test {
 
 using namespace keeler;
+using namespace keeler::scene;
 using namespace keeler::test;
 
 namespace {
@@ -295,7 +296,7 @@ TEST_CASE("every key refuses every wrong type, with one line that names the key"
       if (fits)
         continue;
       CAPTURE(key.path);
-      const Section* const section = find_section(key.section());
+      const config::Section* const section = find_section(key.section());
       const bool in_list = section && section->repeated;
       const std::string name = in_list ? section->path + "[1]." + key.name() : key.path;
       const std::string message = fault(in_list ? section->path + " = [{ " + key.name() + " = " + sample + " }]\n"

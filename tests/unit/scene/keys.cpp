@@ -12,6 +12,7 @@
 namespace keys_test {
 
 using namespace keeler;
+using namespace keeler::scene;
 
 TEST_CASE("the key table is consistent") {
   std::set<std::string> paths;

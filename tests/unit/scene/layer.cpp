@@ -10,10 +10,11 @@
 namespace layer_test {
 
 using namespace keeler;
+using namespace keeler::scene;
 
 TEST_CASE("the mid-plane filling agrees with sampled particles") {
   // brute force: particles of a power law in a Gaussian layer, the volume of the slices of each at z = 0
-  const SizeLaw sizes = power_sizes(3.0, 0.5, 3.0);
+  const particles::SizeLaw sizes = particles::power_sizes(3.0, 0.5, 3.0);
   const LayerSizes layer = layer_sizes(sizes, 20000);
   const double depth = 0.4, dispersion = 20.0, nu = 1.3; // thick compared with a particle, as the formula has it
   const std::vector<double> radii = draw_radii(sizes, 20000, 3);
@@ -34,7 +35,7 @@ TEST_CASE("the mid-plane filling agrees with sampled particles") {
 
 TEST_CASE("a single body is weighted with the mass of the others, for any number of repetitions of a list") {
   // brute force: R = Σ m (1 − m/M) / Σ area, over the particles themselves
-  const auto drawn = [](const SizeLaw& sizes, std::size_t count) {
+  const auto drawn = [](const particles::SizeLaw& sizes, std::size_t count) {
     double cubes = 0.0, sixths = 0.0, squares = 0.0;
     for (const double r : draw_radii(sizes, count, 1)) {
       squares += r * r;
@@ -45,7 +46,7 @@ TEST_CASE("a single body is weighted with the mass of the others, for any number
   };
   std::vector<double> radii(500, 1.0);
   radii.front() = 20.0;
-  const SizeLaw moonlet = listed_sizes(radii);
+  const particles::SizeLaw moonlet = particles::listed_sizes(radii);
   CHECK(layer_sizes(moonlet, 500).effective_radius == doctest::Approx(drawn(moonlet, 500)).epsilon(1e-9));
   CHECK(layer_sizes(moonlet, 500).effective_radius <
         1.1); // ⟨r³⟩/⟨r²⟩ is 9.4: the grains share the area with the moonlet

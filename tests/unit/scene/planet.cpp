@@ -12,6 +12,7 @@
 namespace planet_test {
 
 using namespace keeler;
+using namespace keeler::scene;
 using namespace keeler::test;
 
 namespace {

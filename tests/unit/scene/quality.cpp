@@ -9,6 +9,7 @@
 namespace quality_test {
 
 using namespace keeler;
+using namespace keeler::scene;
 
 namespace {
 

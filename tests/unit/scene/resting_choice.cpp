@@ -13,6 +13,7 @@
 namespace resting_choice_test {
 
 using namespace keeler;
+using namespace keeler::scene;
 using namespace keeler::test;
 
 namespace {

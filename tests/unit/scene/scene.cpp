@@ -12,6 +12,7 @@
 namespace scene_test {
 
 using namespace keeler;
+using namespace keeler::scene;
 using namespace keeler::test;
 
 TEST_CASE("the least scene has the documented defaults") {
@@ -87,7 +88,7 @@ checkpoint_every = 0.25
   const double wavelength = 4 * pi * pi * newton_g_si * 100 / (0.9e-4 * 0.9e-4);
   CHECK(scene.size_x == doctest::Approx(4 * wavelength).epsilon(1e-14));
   CHECK(scene.size_y == doctest::Approx(2 * wavelength).epsilon(1e-14));
-  const SizeLaw power = power_sizes(2.5, 0.5, 5.0);
+  const particles::SizeLaw power = particles::power_sizes(2.5, 0.5, 5.0);
   CHECK(scene.particles.sizes.smallest == 0.5);
   CHECK(scene.particles.sizes.largest == 5.0);
   CHECK(scene.particles.sizes.mean_power(3) == power.mean_power(3));
@@ -245,7 +246,7 @@ TEST_CASE("radii are read from a file next to the scene") {
     return load_scene((folder / "s.toml").string());
   };
   const Scene scene = with("radii.txt");
-  const SizeLaw& sizes = scene.particles.sizes;
+  const particles::SizeLaw& sizes = scene.particles.sizes;
   CHECK(std::vector{sizes.radius(0.0, 0), sizes.radius(0.0, 1), sizes.radius(0.0, 2)} == std::vector{1.0, 2.5, 0.5});
   CHECK(scene.resolved.find("path = \"" + (folder / "radii.txt").string() + "\"") != std::string::npos);
 

@@ -14,6 +14,7 @@
 namespace automatic_step_test {
 
 using namespace keeler;
+using namespace keeler::simulation;
 
 namespace {
 

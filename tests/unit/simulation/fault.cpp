@@ -12,6 +12,7 @@
 namespace fault_test {
 
 using namespace keeler;
+using namespace keeler::simulation;
 
 TEST_CASE("a state whose parts do not fit each other or the scene has a fault") {
   const Scene scene = parse_scene(R"(

@@ -14,6 +14,7 @@
 namespace forces_test {
 
 using namespace keeler;
+using namespace keeler::simulation;
 
 namespace {
 
@@ -148,7 +149,7 @@ TEST_CASE("the energy of self-gravity is what a meter of its own says, and to me
       measured.advance();
       plain.advance();
     }
-    const std::optional<GravityEnergy> energy = measured.gravity_energy();
+    const std::optional<gravity::GravityEnergy> energy = measured.gravity_energy();
     REQUIRE(energy.has_value());
     for (std::size_t k = 0; k < 200; ++k) {
       const Elements &a = measured.state().particles.bodies[k].elements,
@@ -157,8 +158,9 @@ TEST_CASE("the energy of self-gravity is what a meter of its own says, and to me
     }
     std::vector<Vec3> positions;
     std::vector<double> masses;
-    const GravityProblem problem = gravity_problem(plain.boundary(), scene.planet.orbital_frequency, positions, masses);
-    const GravityEnergy own = make_energy_meter(*scene.gravity, masses, problem.box.area())->energy(problem);
+    const gravity::GravityProblem problem =
+        gravity_problem(plain.boundary(), scene.planet.orbital_frequency, positions, masses);
+    const gravity::GravityEnergy own = make_energy_meter(*scene.gravity, masses, problem.box.area())->energy(problem);
     CHECK(energy->potential == own.potential);
     CHECK(energy->stress == own.stress);
     CHECK(energy->potential != 0.0);

@@ -58,10 +58,11 @@ TEST_CASE("the drift phase holds no more than 460 bytes a particle, 660 on threa
       const auto held = static_cast<double>(simulation.drift().costs().bytes_per_particle);
       CHECK(held > 100.0); // bodies, ids and lines alone
       CHECK(held <= (several > 1 ? 660.0 : 460.0));
-      const double memory = 1e6 * derive(scene).memory_mb;
+      const double memory = 1e6 * advice::derive(scene).memory_mb;
       CHECK(memory >= held * count);
       // beyond a constant; a snapshot's copy is extra
-      const double more = (1e6 * derive(scene_of(large, step)).memory_mb - memory) / static_cast<double>(large - count);
+      const double more =
+          (1e6 * advice::derive(scene_of(large, step)).memory_mb - memory) / static_cast<double>(large - count);
       CHECK(more >= held + patch);
     }
   set_threads(before);

@@ -20,6 +20,7 @@
 namespace memory_order_test {
 
 using namespace keeler;
+using namespace keeler::simulation;
 
 namespace {
 

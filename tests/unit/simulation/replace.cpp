@@ -12,6 +12,7 @@
 namespace replace_test {
 
 using namespace keeler;
+using namespace keeler::simulation;
 
 namespace {
 

@@ -17,6 +17,7 @@
 namespace resting_test {
 
 using namespace keeler;
+using namespace keeler::simulation;
 
 namespace {
 
@@ -144,9 +145,9 @@ TEST_CASE("tides part two spheres that touch where r_h is below 1, and not above
 TEST_CASE("a dropped sphere bounces as it should, and then rests") {
   constexpr double step = 2.5e-4, heavier = 30.0, height = 3.0;
   const Scene scene = scene_of_two(900.0, step, "collisions.restitution = { law = \"constant\", value = 0.5 }\n");
-  struct Bounces : DriftObserver {
+  struct Bounces : collision::DriftObserver {
     std::vector<double> speeds;
-    void collided(const CollisionRecord& record) override { speeds.push_back(record.normal_speed); }
+    void collided(const collision::CollisionRecord& record) override { speeds.push_back(record.normal_speed); }
   } bounces;
   Simulation simulation(scene, two(scene, Vec3(0.0, 0.0, height), Vec3::Zero(), heavier));
   simulation.drift().observe(&bounces);
@@ -200,7 +201,7 @@ TEST_CASE("a pile keeps its momentum, and its energy is booked") {
     CHECK(std::fabs(after[k] - before[k]) < 1e-9);
   const EnergyBalance balance = simulation.balance();
   CHECK(std::fabs(balance.residual) < 1e-9 * balance.lost);
-  CHECK(largest_overlap(simulation.patch()).depth == 0.0);
+  CHECK(cells::largest_overlap(simulation.patch()).depth == 0.0);
 }
 
 // A pile at rest conserves its Jacobi energy: nothing more is lost.

@@ -18,6 +18,7 @@
 namespace satellite_test {
 
 using namespace keeler;
+using namespace keeler::simulation;
 
 namespace {
 
@@ -257,9 +258,9 @@ TEST_CASE("a satellite inside the box is refused, also where only a start file k
 
 namespace {
 
-std::optional<SatellitePassage> dragging(const Scene& scene, double least, double from, double until) {
-  return dragging_passage(scene.external_forces.front().parameters, scene.planet.orbital_frequency,
-                          scene.planet.frequencies, least, from, until);
+std::optional<forces::SatellitePassage> dragging(const Scene& scene, double least, double from, double until) {
+  return forces::dragging_passage(scene.external_forces.front().parameters, scene.planet.orbital_frequency,
+                                  scene.planet.frequencies, least, from, until);
 }
 
 } // namespace
@@ -278,7 +279,7 @@ TEST_CASE("the drag of a passage is the fastest that it moves a particle over th
     before = now;
     time = rad;
   }
-  const std::optional<SatellitePassage> passage = dragging(scene, 0.0, 0.0, 6.0);
+  const std::optional<forces::SatellitePassage> passage = dragging(scene, 0.0, 0.0, 6.0);
   REQUIRE(passage.has_value());
   CHECK(passage->orbits == 3.0);
   CHECK(relative(fastest / (distance / (two_pi * upright)), passage->drag) < 1e-2);
@@ -287,21 +288,21 @@ TEST_CASE("the drag of a passage is the fastest that it moves a particle over th
 TEST_CASE("the passages that drag particles along are those far from the time when the cell stands upright") {
   // 0.77 · 1e-3 · 2π per orbit: 0.6 at 124 orbits from 30
   const Scene scene = scene_with(1e-3, "passage = 10.0\nevery = 25.0\nupright_after = 20.0\n", 1.0);
-  CHECK(!dragging(scene, doubtful_drag, 0.0, 150.0));
-  const std::optional<SatellitePassage> first = dragging(scene, doubtful_drag, 0.0, 400.0);
+  CHECK(!dragging(scene, forces::doubtful_drag, 0.0, 150.0));
+  const std::optional<forces::SatellitePassage> first = dragging(scene, forces::doubtful_drag, 0.0, 400.0);
   REQUIRE(first.has_value());
   CHECK(first->orbits == 160.0);
   CHECK(relative(first->drag, 4.0 / (3.0 * std::sqrt(3.0)) * 1e-3 * two_pi * 130.0) < 1e-9);
-  CHECK(dragging(scene, doubtful_drag, 160.0 + 1e-6, 400.0)->orbits == 185.0);
-  CHECK(!dragging(scene, doubtful_drag, 160.0 + 1e-6, 184.0));
+  CHECK(dragging(scene, forces::doubtful_drag, 160.0 + 1e-6, 400.0)->orbits == 185.0);
+  CHECK(!dragging(scene, forces::doubtful_drag, 160.0 + 1e-6, 184.0));
   // before it
   const Scene late = scene_with(1e-3, "passage = 210.0\nevery = 100.0\nupright_after = 200.0\n", 1.0);
-  CHECK(dragging(late, doubtful_drag, 0.0, 1000.0)->orbits == 10.0);
-  CHECK(dragging(late, doubtful_drag, 250.0, 1000.0)->orbits == 610.0); // 310, 410 and 510 are near 410
+  CHECK(dragging(late, forces::doubtful_drag, 0.0, 1000.0)->orbits == 10.0);
+  CHECK(dragging(late, forces::doubtful_drag, 250.0, 1000.0)->orbits == 610.0); // 310, 410 and 510 are near 410
   // without `every` there is one
   const Scene once = scene_with(1e-3, "passage = 10.0\nupright_after = 200.0\n", 1.0);
-  CHECK(dragging(once, doubtful_drag, 0.0, 1000.0)->orbits == 10.0);
-  CHECK(!dragging(once, doubtful_drag, 11.0, 1000.0));
+  CHECK(dragging(once, forces::doubtful_drag, 0.0, 1000.0)->orbits == 10.0);
+  CHECK(!dragging(once, forces::doubtful_drag, 11.0, 1000.0));
 }
 
 } // namespace satellite_test

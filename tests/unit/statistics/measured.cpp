@@ -7,6 +7,7 @@
 namespace measured_test {
 
 using namespace keeler;
+using namespace keeler::statistics;
 
 TEST_CASE("the scatter is that of single snapshots, and needs two of them") {
   const std::array values{1.0, 2.0, 3.0};

@@ -5,6 +5,7 @@
 namespace median_test {
 
 using namespace keeler;
+using namespace keeler::statistics;
 
 TEST_CASE("medians") {
   CHECK(median({3.0, 1.0, 2.0}) == 2.0);

@@ -7,6 +7,7 @@
 namespace scatter_test {
 
 using namespace keeler;
+using namespace keeler::statistics;
 
 TEST_CASE("mean and deviation") {
   const Scatter s = scatter_of({1.0, 2.0, 6.0});

@@ -10,6 +10,7 @@
 namespace time_series_test {
 
 using namespace keeler;
+using namespace keeler::statistics;
 
 namespace {
 

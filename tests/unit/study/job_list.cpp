@@ -9,6 +9,7 @@
 namespace job_list_test {
 
 using namespace keeler;
+using namespace keeler::study;
 using namespace keeler::test;
 
 TEST_CASE("a list of jobs stops, is continued, and does nothing twice") {

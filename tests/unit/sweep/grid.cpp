@@ -5,6 +5,7 @@
 namespace grid_test {
 
 using namespace keeler;
+using namespace keeler::sweep;
 using namespace keeler::test;
 
 TEST_CASE("a grid holds what its file says") {

@@ -30,12 +30,12 @@ end = 1.0
   }
 
   std::filesystem::path path() const { return folder_ / "grid.toml"; }
-  Grid grid() const { return read_grid(path()); }
+  sweep::Grid grid() const { return sweep::read_grid(path()); }
 
   /// Returns the message of its first fault, without the folder; empty if there is none.
   std::string fault() const {
     try {
-      const Grid read = grid();
+      const sweep::Grid read = grid();
       plan_runs(read);
     } catch (const UsageError& error) {
       std::string text = error.what();

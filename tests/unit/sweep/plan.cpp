@@ -8,6 +8,7 @@
 namespace plan_test {
 
 using namespace keeler;
+using namespace keeler::sweep;
 using namespace keeler::test;
 
 namespace {
@@ -25,7 +26,7 @@ values = [{ law = "constant", value = 0.5 }, { law = "bridges", scale = 0.34 }]
 
 std::vector<std::string> names_of(const Plan& plan) {
   std::vector<std::string> names;
-  for (const PlannedRun& run : plan.runs)
+  for (const batch::PlannedRun& run : plan.runs)
     names.push_back(run.name);
   return names;
 }
@@ -40,7 +41,7 @@ TEST_CASE("axes are crossed, keys of one axis change together, and each point ha
   REQUIRE(plan.runs.size() == 8);
   CHECK(plan.keys == std::vector<std::string>{"particles.optical_depth", "box.size", "collisions.restitution"});
   for (std::size_t k = 0; k < 8; ++k) {
-    const PlannedRun& run = plan.runs[k];
+    const batch::PlannedRun& run = plan.runs[k];
     CHECK(run.point == k / 2);
     CHECK(run.seed == (k % 2 == 0 ? 7 : 2));
     CHECK(run.scene.particles.seed == run.seed);

@@ -12,6 +12,7 @@
 namespace tables_test {
 
 using namespace keeler;
+using namespace keeler::sweep;
 using namespace keeler::test;
 
 namespace {
@@ -28,19 +29,19 @@ values = [1e-3, 2e-3]
 )";
 
 // Makes a number for each run and quantity; some runs have failed, some quantities are unknown.
-std::vector<RunRow> made_up_rows(const Plan& plan) {
-  std::vector<RunRow> rows;
+std::vector<batch::RunRow> made_up_rows(const Plan& plan) {
+  std::vector<batch::RunRow> rows;
   for (std::size_t k = 0; k < plan.runs.size(); ++k) {
-    RunRow row;
+    batch::RunRow row;
     row.run = &plan.runs[k];
     if (k == 4) {
-      row.status = RunStatus::failed;
+      row.status = batch::RunStatus::failed;
       row.reason = "no room, \"none\"";
     } else if (k != 7) {
-      row.status = RunStatus::finished;
+      row.status = batch::RunStatus::finished;
       row.numbers.emplace();
       row.numbers->steady = k % 2 == 0;
-      for (std::size_t q = 0; q < RunQuantities().columns().size(); ++q) {
+      for (std::size_t q = 0; q < batch::RunQuantities().columns().size(); ++q) {
         const double value = std::sin(1.7 * static_cast<double>(k) + 0.3 * static_cast<double>(q * q));
         row.numbers->values.push_back(q % 5 == 3 && k % 3 == 1 ? std::nullopt
                                                                : std::optional(Estimate{value, 0.1 * value}));
@@ -72,13 +73,14 @@ TEST_CASE("a point has the mean of its finished runs, as sums over all pairs of 
   const GridFile file(text);
   const Grid grid = file.grid();
   const Plan plan = plan_runs(grid);
-  const std::vector<RunRow> runs = made_up_rows(plan);
-  const std::vector<PointRow> points = point_rows(runs, plan.points.size(), RunQuantities().columns().size());
+  const std::vector<batch::RunRow> runs = made_up_rows(plan);
+  const std::vector<batch::PointRow> points =
+      point_rows(runs, plan.points.size(), batch::RunQuantities().columns().size());
   REQUIRE(points.size() == 4);
   for (std::size_t p = 0; p < points.size(); ++p)
-    for (std::size_t q = 0; q < RunQuantities().columns().size(); ++q) {
+    for (std::size_t q = 0; q < batch::RunQuantities().columns().size(); ++q) {
       std::vector<Estimate> seeds;
-      for (const RunRow& run : runs)
+      for (const batch::RunRow& run : runs)
         if (run.run->point == p && run.numbers && run.numbers->values[q])
           seeds.push_back(*run.numbers->values[q]);
       REQUIRE(points[p].values[q].has_value() == !seeds.empty());
@@ -96,14 +98,14 @@ TEST_CASE("tables have finished and failed runs, with gaps where nothing is know
   const GridFile file(text);
   const Grid grid = file.grid();
   const Plan plan = plan_runs(grid);
-  const std::vector<RunRow> runs = made_up_rows(plan);
-  const std::string csv = csv_with_gaps(runs_as_json(grid, plan, runs));
+  const std::vector<batch::RunRow> runs = made_up_rows(plan);
+  const std::string csv = report::csv_with_gaps(runs_as_json(grid, plan, runs));
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 12); // the header and all runs but the one that is not finished
   CHECK(csv.starts_with("run,particles.optical_depth,time.step,seed,status,reason,particle_count,since_orbit,"));
   CHECK(csv.find("\noptical_depth-0.1_step-0.002_seed-2,0.1,0.002,2,failed,\"no room, \"\"none\"\"\",,") != csv.npos);
   CHECK(csv.find("null") == csv.npos);
-  const Json points =
-      points_as_json(grid, plan, point_rows(runs, plan.points.size(), RunQuantities().columns().size()));
+  const batch::Json points =
+      points_as_json(grid, plan, point_rows(runs, plan.points.size(), batch::RunQuantities().columns().size()));
   CHECK(points[3].at("particles.optical_depth") == 0.2);
   CHECK(points[1].at("failed_runs") == 1);
 }

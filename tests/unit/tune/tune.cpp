@@ -8,6 +8,7 @@
 namespace tune_test {
 
 using namespace keeler;
+using namespace keeler::tune;
 
 namespace {
 
@@ -26,7 +27,7 @@ end = 0.5
 )";
 
 Tuning tuned(const TuneSettings& settings) {
-  return tune(parse_scene(text, "s.toml"), settings);
+  return tune::tune(parse_scene(text, "s.toml"), settings);
 }
 
 } // namespace
@@ -37,9 +38,9 @@ TEST_CASE("the choices meet the tolerances, and no other measured setting that m
   CHECK(t.particles == 400);
   CHECK(t.orbits >= 0.3);
   REQUIRE(t.meets_force_error);
-  const GravityBenchRow& gravity = t.gravity[t.chosen_gravity];
+  const bench::GravityBenchRow& gravity = t.gravity[t.chosen_gravity];
   CHECK(gravity.errors.rms <= margin_for_seeds * settings.force_error);
-  for (const GravityBenchRow& row : t.gravity)
+  for (const bench::GravityBenchRow& row : t.gravity)
     CHECK((row.errors.rms > margin_for_seeds * settings.force_error ||
            1.04 * row.ns_per_particle >= gravity.ns_per_particle));
   REQUIRE(t.meets_physics_error);
@@ -60,7 +61,7 @@ TEST_CASE("the choices meet the tolerances, and no other measured setting that m
 TEST_CASE("tolerances that no setting meets are reported, and the most accurate setting is chosen") {
   const Tuning t = tuned({.force_error = 1e-5, .physics_error = 1e-9, .orbits = 0.05});
   if (!t.meets_force_error)
-    for (const GravityBenchRow& row : t.gravity)
+    for (const bench::GravityBenchRow& row : t.gravity)
       CHECK(row.errors.rms >= t.gravity[t.chosen_gravity].errors.rms);
   if (!t.meets_physics_error)
     CHECK(t.kicks[t.chosen_kicks].interval == 1e-3);
@@ -69,7 +70,7 @@ TEST_CASE("tolerances that no setting meets are reported, and the most accurate 
 TEST_CASE("the tuned scene is the resolved scene with the choices") {
   Tuning t;
   t.orbits = 4.0;
-  GravityBenchRow row;
+  bench::GravityBenchRow row;
   GravitySettings fft;
   fft.solver = GravitySettings::Solver::fft;
   fft.force_error = 5e-3;

@@ -7,6 +7,7 @@
 namespace claims_test {
 
 using namespace keeler;
+using namespace keeler::study;
 
 namespace {
 

@@ -8,6 +8,7 @@
 namespace step_law_test {
 
 using namespace keeler;
+using namespace keeler::study;
 
 TEST_CASE("the law of the step is found again from its own values") {
   const std::vector<double> steps = {1e-4, 3e-4, 1e-3, 3e-3, 1e-2};

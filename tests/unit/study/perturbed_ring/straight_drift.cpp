@@ -10,15 +10,16 @@
 namespace straight_drift_test {
 
 using namespace keeler;
+using namespace keeler::study;
 
 namespace {
 
 constexpr Frequencies f{1.0, 1.0};
 constexpr double omega = 1.95e-4;
 
-CollisionSettings half_elastic() {
-  CollisionSettings settings;
-  settings.restitution = constant_restitution(0.5);
+collision::CollisionSettings half_elastic() {
+  collision::CollisionSettings settings;
+  settings.restitution = collision::constant_restitution(0.5);
   return settings;
 }
 
@@ -92,7 +93,7 @@ private:
       states[k == c.j] = {legs_[k].position + (c.time - legs_[k].since) * legs_[k].velocity,
                           state_at(bodies_[k].elements, f, rotation).velocity};
     const double speed = -(states[1].velocity - slide - states[0].velocity).dot(normal);
-    const Rebound after = rebound(half_elastic(), speed, bodies_[c.i].radius, bodies_[c.j].radius, omega);
+    const collision::Rebound after = rebound(half_elastic(), speed, bodies_[c.i].radius, bodies_[c.j].radius, omega);
     if (speed <= -after.speed)
       return false;
     states[0].velocity -= 0.5 * (speed + after.speed) * normal;
@@ -152,7 +153,7 @@ TEST_CASE("the drift equals a search of every pair and image after every event")
   int collisions = 0;
   for (const double step : {two_pi * 1e-3, two_pi * 1e-2, two_pi * 3e-2})
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-      UniformRequest request;
+      initial_conditions::UniformRequest request;
       request.radii.assign(50, 1.0);
       request.box = {20.0, 16.0, f.shear(), 0.41 * 16.0 * static_cast<double>(seed % 3)};
       request.dispersion_x = 4.0;

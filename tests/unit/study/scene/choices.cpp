@@ -10,6 +10,7 @@
 namespace choices_test {
 
 using namespace keeler;
+using namespace keeler::study;
 
 namespace {
 

@@ -9,6 +9,7 @@
 namespace runs_test {
 
 using namespace keeler;
+using namespace keeler::study;
 using namespace keeler::test;
 
 namespace {
@@ -55,7 +56,7 @@ private:
 TEST_CASE("each seed evolves one common state, and the first orbits of a run are left out of the means") {
   SceneFile file;
   const StudyPlan plan = file.plan(SceneStudyKind::kicks);
-  const std::vector<PlannedRun> growth = growth_runs(plan);
+  const std::vector<batch::PlannedRun> growth = growth_runs(plan);
   REQUIRE(growth.size() == 3);
   CHECK(growth[2].name == "grow_seed-7");
   CHECK(growth[2].scene.particles.seed == 7);
@@ -74,7 +75,7 @@ TEST_CASE("boxes have no common state, and boxes with too few particles are left
   REQUIRE(plan.choices.choices.size() == 3); // 120, 235 and 480 particles
   CHECK(plan.choices.choices[plan.choices.reference.value()].name == "box-2");
   CHECK(file.notices.size() == 2);
-  const std::vector<PlannedRun> runs = setting_runs(plan, RunFolders("none"));
+  const std::vector<batch::PlannedRun> runs = setting_runs(plan, batch::RunFolders("none"));
   REQUIRE(runs.size() == 9);
   CHECK(runs[4].name == "box-1.4_seed-6");
   CHECK(runs[4].point == 1);

@@ -8,6 +8,7 @@
 namespace verdict_test {
 
 using namespace keeler;
+using namespace keeler::study;
 
 namespace {
 
@@ -19,11 +20,11 @@ public:
            double force_error = 1e-3) {
     choices_.choices.push_back({name, {}});
     for (const double side : {-1.0, 0.0, 1.0}) {
-      PlannedRun& planned = planned_.emplace_back();
+      batch::PlannedRun& planned = planned_.emplace_back();
       planned.point = choices_.choices.size() - 1;
-      RunRow& run = runs_.emplace_back();
+      batch::RunRow& run = runs_.emplace_back();
       run.run = &planned;
-      run.status = RunStatus::finished;
+      run.status = batch::RunStatus::finished;
       std::vector<std::optional<Estimate>>& values = run.numbers.emplace().values;
       values.resize(study_numbers().size());
       values[number_at("cpu_s_per_orbit")] = {cpu, 0.0};
@@ -34,7 +35,7 @@ public:
   }
 
   void fail_last() {
-    runs_.back().status = RunStatus::failed;
+    runs_.back().status = batch::RunStatus::failed;
     runs_.back().numbers.reset();
   }
 
@@ -45,8 +46,8 @@ public:
 
 private:
   StudyChoices choices_;
-  std::deque<PlannedRun> planned_;
-  std::vector<RunRow> runs_;
+  std::deque<batch::PlannedRun> planned_;
+  std::vector<batch::RunRow> runs_;
 };
 
 } // namespace
@@ -58,7 +59,7 @@ TEST_CASE("means and differences of settings have Student's intervals") {
   const StudyMeans means = study.means();
   const std::size_t balance = number_at("energy_balance");
   CHECK(mean_bound(means.settings[0].scatter[balance]) == doctest::Approx(4.303 * 0.001 / std::sqrt(3.0)));
-  const MeanDifference& d = means.settings[1].from_reference[balance];
+  const statistics::MeanDifference& d = means.settings[1].from_reference[balance];
   CHECK(d.difference == doctest::Approx(0.01));
   CHECK(d.bound == doctest::Approx(2.776 * std::sqrt(0.5 * (1e-6 + 4e-6) * 2.0 / 3.0)));
   CHECK_FALSE(means.settings[0].from_reference[balance].known());
