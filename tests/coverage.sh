@@ -20,7 +20,7 @@ LLVM_PROFILE_FILE=$PWD/build/coverage/profiles/%4m.profraw ctest --test-dir buil
 llvm-profdata-14 merge --failure-mode=all --output build/coverage/all.profdata build/coverage/profiles/*.profraw
 mapfile -t programs < <(find build/coverage -type f -executable ! -path '*/CMakeFiles/*' ! -name '*.so' | sort)
 cover() { # VERB ARGUMENT...
-  "llvm-cov-14" "$@" --instr-profile build/coverage/all.profdata --ignore-filename-regex '/(tests|src/cli|src/render|src/python)/|/build/[^/]*/src/|/usr/' \
+  "llvm-cov-14" "$@" --instr-profile build/coverage/all.profdata --ignore-filename-regex '/(tests|src/cli|src/render|src/python)/|/build/[^/]*/(src|lab)/|/usr/' \
     "${programs[0]}" "${programs[@]/#/--object=}"
 }
 cover show --show-line-counts --show-branches=none >build/coverage/coverage.txt

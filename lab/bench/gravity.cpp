@@ -1,6 +1,6 @@
 #include <keeler/bench/gravity.hpp>
 
-#include <keeler/bench/gravity_states.hpp>
+#include "gravity_states.hpp"
 #include <keeler/bench/yardsticks.hpp>
 #include <keeler/cells/order.hpp>
 #include <keeler/core/simd.hpp>

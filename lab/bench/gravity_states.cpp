@@ -1,4 +1,4 @@
-#include <keeler/bench/gravity_states.hpp>
+#include "gravity_states.hpp"
 
 #include <keeler/advice/derived.hpp>
 #include <keeler/initial_conditions/initial.hpp>

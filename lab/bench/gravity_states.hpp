@@ -4,7 +4,7 @@
 // the gravity of the tiles equals that of the one periodic patch.
 #pragma once
 
-#include <keeler/bench/states.hpp>
+#include "states.hpp"
 
 #include <cstdint>
 

@@ -1,4 +1,4 @@
-#include <keeler/bench/states.hpp>
+#include "states.hpp"
 
 #include <keeler/advice/derived.hpp>
 #include <keeler/core/error.hpp>

@@ -1,6 +1,6 @@
 #include <keeler/bench/step.hpp>
 
-#include <keeler/bench/gravity_states.hpp>
+#include "gravity_states.hpp"
 #include <keeler/comm/same_request.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/diagnostics/dispersion.hpp>

@@ -11,8 +11,6 @@
 #include <keeler/core/json_of_files.hpp>
 #include <keeler/core/phase_progress.hpp>
 #include <keeler/core/version.hpp>
-#include <keeler/diagnostics/surface.hpp>
-#include <keeler/files/files.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/initial_conditions/possible.hpp>
 #include <keeler/io/series.hpp>

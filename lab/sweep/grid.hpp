@@ -17,7 +17,6 @@
 
 #include <keeler/batch/quantities.hpp>
 #include <keeler/config/overrides.hpp>
-#include <keeler/scene/scene.hpp>
 
 #include <filesystem>
 #include <optional>

@@ -7,7 +7,6 @@
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/io/hash.hpp>
-#include <keeler/scene/load.hpp>
 #include <keeler/scene/load_parts.hpp>
 
 #include <fmt/format.h>

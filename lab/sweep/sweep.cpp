@@ -10,7 +10,6 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/interrupt.hpp>
-#include <keeler/core/json_of_files.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/report/csv.hpp>
 
@@ -81,6 +80,10 @@ std::string write_tables(const Grid& grid, const Plan& plan, const batch::RunFol
     return {};
   }
   files::write_text(folders.path() / "points.csv", report::csv_with_gaps(point_table));
+  for (const char* const name : {"figure.svg", "figure.png"}) {
+    std::error_code absent;
+    fs::remove(folders.path() / name, absent);
+  }
   bool drawn = false;
   std::string fault;
   try {

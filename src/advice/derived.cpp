@@ -4,7 +4,6 @@
 #include <keeler/core/format.hpp>
 #include <keeler/core/memory.hpp>
 #include <keeler/core/threads.hpp>
-#include <keeler/core/units.hpp>
 #include <keeler/gravity/axisymmetric.hpp>
 #include <keeler/gravity/fft.hpp>
 #include <keeler/particles/patch.hpp>

@@ -2,7 +2,6 @@
 
 #include <keeler/advice/grain_piles.hpp>
 #include <keeler/core/format.hpp>
-#include <keeler/core/units.hpp>
 #include <keeler/gravity/axisymmetric.hpp>
 #include <keeler/gravity/fft.hpp>
 #include <keeler/gravity/near_image_count.hpp>

@@ -2,7 +2,6 @@
 #include <keeler/advice/warnings.hpp>
 
 #include <keeler/core/format.hpp>
-#include <keeler/core/units.hpp>
 
 #include <fmt/format.h>
 

@@ -4,8 +4,6 @@
 #include "print_record.hpp"
 
 #include <keeler/bench/drift.hpp>
-#include <keeler/core/format.hpp>
-#include <keeler/core/json_of_files.hpp>
 #include <keeler/scene/keys.hpp>
 
 #include <fmt/format.h>

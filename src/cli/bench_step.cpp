@@ -4,8 +4,6 @@
 #include "print_record.hpp"
 
 #include <keeler/bench/step.hpp>
-#include <keeler/core/format.hpp>
-#include <keeler/core/json_of_files.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

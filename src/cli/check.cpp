@@ -14,7 +14,6 @@
 #include <keeler/core/threads.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/scene/keys.hpp>
-#include <keeler/scene/load.hpp>
 #include <keeler/scene/load_parts.hpp>
 #include <keeler/scene/patch_scale.hpp>
 

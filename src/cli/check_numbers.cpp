@@ -2,7 +2,6 @@
 
 #include <keeler/advice/estimate.hpp>
 #include <keeler/advice/grain_piles.hpp>
-#include <keeler/core/format.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/scene/contact_rates.hpp>
 #include <keeler/scene/planet.hpp>

@@ -1,7 +1,6 @@
 // Options of several commands.
 #pragma once
 
-#include <keeler/core/error.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/start_threads.hpp>
 #include <keeler/core/suggest.hpp>

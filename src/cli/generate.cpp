@@ -1,7 +1,6 @@
 // keeler generate: writes an initial state, of a scene or of a table of particles, as a snapshot in double precision.
 #include "command.hpp"
 #include "common_options.hpp"
-#include "messages.hpp"
 #include "print.hpp"
 #include "progress_line.hpp"
 #include "results.hpp"

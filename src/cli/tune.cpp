@@ -9,7 +9,6 @@
 #include "signals.hpp"
 
 #include <keeler/core/format.hpp>
-#include <keeler/core/interrupt.hpp>
 #include <keeler/core/json_of_files.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/scene/quality.hpp>

@@ -174,7 +174,6 @@ bool BoundedImpulses::solve(std::span<const double> required, std::span<const do
     if (k == max_iterations)
       return false;
     throw_if_interrupted();
-    ++iterations_;
     if (residual.bound > residual.free) {
       proportioning_step();
       continue;

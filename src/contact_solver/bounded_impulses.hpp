@@ -32,8 +32,6 @@ public:
   /// impulse is zero, to within its tolerance. Returns false after 100,000 iterations or if no impulses exist.
   bool solve(std::span<const double> required, std::span<const double> tolerances, std::span<double> impulses);
 
-  std::size_t iterations() const { return iterations_; }
-
 private:
   /// A joint in units in which A has a unit diagonal: of impulses, 1 / √(1/m + 1/m'); of a body's velocity, 1 / √m.
   struct Row {
@@ -68,7 +66,6 @@ private:
   std::vector<Row> rows_;
   std::vector<double> scales_; // units of the impulses
   double step_length_ = 0.0;   // of a projected gradient step, below 2 / (largest eigenvalue of A)
-  std::size_t iterations_ = 0;
 
   // the current problem, in these units
   std::vector<double> x_, required_, tolerances_, gradient_, direction_, applied_; // applied_ = A direction_

@@ -27,11 +27,6 @@ void RestingContacts::note(const Particles& particles, const collision::SlowPair
     noted_.push_back({{low, high}, pair.low, pair.high});
 }
 
-const RestingCosts& RestingContacts::costs() const {
-  static const RestingCosts none;
-  return work_ ? work_->costs : none;
-}
-
 void RestingContacts::persist(RestingState& state, const RestingStep& step,
                               const std::optional<collision::Friction>& friction, CollisionTally& tally) {
   if (!work_)

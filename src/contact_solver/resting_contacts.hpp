@@ -43,11 +43,6 @@ struct RestingStep {
   std::span<const KickPart> kicks;
 };
 
-/// Cost of the last persist().
-struct RestingCosts {
-  std::size_t contacts = 0, iterations = 0;
-};
-
 class RestingContacts {
 public:
   RestingContacts();
@@ -72,8 +67,6 @@ public:
 
   /// Tells that the particles' order in memory has changed.
   void reordered() { indices_known_ = false; }
-
-  const RestingCosts& costs() const;
 
 private:
   struct Noted {

@@ -205,8 +205,6 @@ void RestingContacts::Work::solve(const RestingStep& step) {
   }
   for (std::size_t c = 0; c < held.size(); ++c)
     held[c]->impulse = impulses[c];
-  costs.contacts = pairs.size();
-  costs.iterations = network.iterations();
 }
 
 // Applies half of the impulses, next to the half kicks. Impulses and kicks act together and do their work at the mean

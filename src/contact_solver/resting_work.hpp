@@ -44,7 +44,6 @@ struct RestingContacts::Work {
   std::vector<Vec3> kicks_before, kicks_after; // of each member, m rad⁻¹
   std::vector<Vec3> velocity_changes;          // velocity change of each member by all impulses
   std::vector<PairAtRest> pairs;
-  RestingCosts costs;
 
   void find_members(const RestingState& state, const std::vector<Noted>& noted, const Particles& particles,
                     bool indices_known);

@@ -37,6 +37,10 @@ public:
     require_registrable_name(what_, entry.*name_);
     if constexpr (requires { entry.keys; })
       require_complete_keys(what_, entry.*name_, entry.keys);
+    if constexpr (requires { entry.keys; })
+      for (const Key& key : entry.keys)
+        if (table_ == KeyTable::shared && key.path == "law")
+          fail_taken_key(what_, entry.*name_, key.path);
     const std::lock_guard lock(guard_);
     for (const Entry& other : entries_)
       require_different(entry, other);
@@ -63,8 +67,7 @@ private:
     if constexpr (requires { entry.keys; })
       for (const Key& key : entry.keys) {
         const auto same = [&](const Key& k) { return k.path == key.path; };
-        if (table_ == KeyTable::shared &&
-            (key.path == "law" || std::any_of(other.keys.begin(), other.keys.end(), same)))
+        if (table_ == KeyTable::shared && std::any_of(other.keys.begin(), other.keys.end(), same))
           fail_taken_key(what_, entry.*name_, key.path);
       }
   }

@@ -1,10 +1,11 @@
-#include <keeler/core/parallel.hpp>
 #include <keeler/core/threads.hpp>
 
 #include <keeler/core/error.hpp>
 
 #include <fmt/format.h>
 #include <omp.h>
+
+#include <algorithm>
 
 namespace keeler {
 

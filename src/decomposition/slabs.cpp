@@ -2,7 +2,6 @@
 
 #include <keeler/cells/order.hpp>
 #include <keeler/core/parallel.hpp>
-#include <keeler/particles/order.hpp>
 
 #include <algorithm>
 #include <array>

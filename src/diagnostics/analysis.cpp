@@ -1,15 +1,15 @@
 #include <keeler/diagnostics/analysis.hpp>
 
+#include "energy.hpp"
+#include "local.hpp"
+#include "size_classes.hpp"
+#include "spin.hpp"
+#include "velocity_ellipsoid.hpp"
 #include <keeler/core/error.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
-#include <keeler/diagnostics/energy.hpp>
 #include <keeler/diagnostics/epicyclic_waves.hpp>
-#include <keeler/diagnostics/local.hpp>
 #include <keeler/diagnostics/radial_modes.hpp>
-#include <keeler/diagnostics/size_classes.hpp>
-#include <keeler/diagnostics/spin.hpp>
 #include <keeler/diagnostics/surface.hpp>
-#include <keeler/diagnostics/velocity_ellipsoid.hpp>
 #include <keeler/diagnostics/viscosity.hpp>
 #include <keeler/diagnostics/wake_geometry.hpp>
 #include <keeler/hill/toomre.hpp>

@@ -1,4 +1,4 @@
-#include <keeler/diagnostics/energy.hpp>
+#include "energy.hpp"
 
 #include <keeler/diagnostics/mean.hpp>
 

@@ -1,9 +1,8 @@
-#include <keeler/diagnostics/local.hpp>
+#include "local.hpp"
 
 #include <keeler/cells/grid.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
-#include <keeler/diagnostics/mean.hpp>
 #include <keeler/diagnostics/surface.hpp>
 
 #include <algorithm>

@@ -1,6 +1,5 @@
-#include <keeler/diagnostics/size_classes.hpp>
+#include "size_classes.hpp"
 
-#include <keeler/core/parallel.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/mean.hpp>
 

@@ -1,4 +1,4 @@
-#include <keeler/diagnostics/spin.hpp>
+#include "spin.hpp"
 
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/mean.hpp>

@@ -5,7 +5,6 @@
 #include "cell_tree.hpp"
 #include "kernels.hpp"
 
-#include <keeler/gravity/images.hpp>
 #include <keeler/gravity/solver.hpp>
 
 namespace keeler::gravity {

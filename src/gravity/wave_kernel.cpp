@@ -2,7 +2,6 @@
 
 #include "spline_waves.hpp"
 
-#include <keeler/core/parallel.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 

@@ -1,5 +1,6 @@
 #include <keeler/initial_conditions/clumped.hpp>
 
+#include "settling.hpp"
 #include <keeler/core/error.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/diagnostics/particle_means.hpp>
@@ -7,8 +8,6 @@
 #include <keeler/diagnostics/viscosity.hpp>
 #include <keeler/initial_conditions/broken.hpp>
 #include <keeler/initial_conditions/initial.hpp>
-#include <keeler/initial_conditions/settling.hpp>
-#include <keeler/scene/load.hpp>
 #include <keeler/scene/load_parts.hpp>
 #include <keeler/scene/patch_scale.hpp>
 #include <keeler/simulation/simulation.hpp>

@@ -3,7 +3,6 @@
 
 #include <keeler/io/particle_table.hpp>
 #include <keeler/particles/patch.hpp>
-#include <keeler/scene/load.hpp>
 #include <keeler/scene/load_parts.hpp>
 #include <keeler/scene/scene.hpp>
 

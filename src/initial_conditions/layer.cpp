@@ -1,4 +1,4 @@
-#include <keeler/initial_conditions/layer.hpp>
+#include "layer.hpp"
 
 #include <keeler/core/units.hpp>
 

@@ -1,11 +1,11 @@
 #include "placing.hpp"
 
+#include "layer.hpp"
 #include <keeler/core/error.hpp>
 #include <keeler/core/exact_sum.hpp>
 #include <keeler/core/parallel.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/initial_conditions/layer.hpp>
 #include <keeler/scene/layer.hpp>
 
 #include <fmt/format.h>

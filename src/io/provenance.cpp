@@ -3,7 +3,6 @@
 #include "provenance_attributes.hpp"
 
 #include <keeler/core/threads.hpp>
-#include <keeler/core/vector.hpp>
 #include <keeler/core/version.hpp>
 
 #include <fmt/format.h>

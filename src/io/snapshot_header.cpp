@@ -1,7 +1,5 @@
 #include "snapshot_header.hpp"
 
-#include "formats.hpp"
-
 #include <keeler/core/error.hpp>
 
 #include <fmt/format.h>

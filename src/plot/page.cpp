@@ -167,13 +167,6 @@ void Page::shade(double left, double top, double width, double height, const Col
   cairo_fill(cairo_);
 }
 
-void Page::dot(PagePoint at, double radius, const Colour& colour) {
-  set_colour(cairo_, colour);
-  cairo_new_sub_path(cairo_);
-  cairo_arc(cairo_, at.x, at.y, radius, 0.0, two_pi);
-  cairo_fill(cairo_);
-}
-
 void Page::begin_clip(double left, double top, double width, double height) {
   cairo_save(cairo_);
   cairo_rectangle(cairo_, left, top, width, height);

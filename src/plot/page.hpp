@@ -49,7 +49,6 @@ public:
   void arrow(PagePoint from, PagePoint to, const Colour& colour, double width);
   void frame(double left, double top, double width, double height, const Colour& colour);
   void shade(double left, double top, double width, double height, const Colour& colour, double opacity);
-  void dot(PagePoint at, double radius, const Colour& colour);
 
   /// Clips everything drawn until end_clip() to the rectangle.
   void begin_clip(double left, double top, double width, double height);

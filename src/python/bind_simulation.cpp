@@ -15,7 +15,6 @@
 #include <keeler/initial_conditions/possible.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/runs/state_hash.hpp>
-#include <keeler/scene/load.hpp>
 #include <keeler/scene/load_parts.hpp>
 #include <keeler/scene/patch_scale.hpp>
 

@@ -43,7 +43,8 @@ bool has_ffmpeg() {
   std::istringstream path(folders ? folders : "");
   for (std::string folder; std::getline(path, folder, ':');) {
     const std::filesystem::path program = std::filesystem::path(folder.empty() ? "." : folder) / "ffmpeg";
-    if (std::filesystem::is_regular_file(program) && access(program.c_str(), X_OK) == 0)
+    std::error_code unreadable;
+    if (std::filesystem::is_regular_file(program, unreadable) && access(program.c_str(), X_OK) == 0)
       return true;
   }
   return false;

@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <cassert>
 #include <iterator>
+#include <string_view>
 #include <utility>
 
 #include <fcntl.h>
@@ -70,8 +71,8 @@ Recorder::Recorder(const RunFolder& folder, const FolderLock* lock, const Scene&
                    const std::vector<std::string>& arguments, OutputCounters counters,
                    std::optional<std::int64_t> resumed_at, Notice notice, const Communicator& ranks)
     : folder_(folder), lock_(lock), ranks_(ranks), scene_(scene), provenance_(io::collect_provenance(arguments)),
-      counters_(std::move(counters)), notice_(std::move(notice)), columns_(series_columns_of(scene)),
-      moonlet_columns_(moonlet_columns_of(scene)) {
+      counters_(std::move(counters)), notice_(std::move(notice)), all_columns_(series_columns_of(scene)),
+      columns_(all_columns_), moonlet_columns_(moonlet_columns_of(scene)) {
   assert((lock != nullptr) == ranks.is_root());
   ranks_.on_root([&] { open(resumed_at); });
 }
@@ -233,16 +234,26 @@ void Recorder::sample(const Simulation& simulation) {
   for (std::size_t k = 0; k < moonlets.size(); ++k)
     for (const MoonletColumn& column : moonlet_columns_)
       moonlets[k].push_back(column.value({scene_, simulation, k}));
-  ranks_.on_root([&] { append(row, moonlets); });
+  const std::vector<double> values = values_of(all_columns_, row); // an own column may be collective
+  ranks_.on_root([&] { append(row, values, moonlets); });
 }
 
-void Recorder::append(const SeriesSample& row, const std::vector<std::vector<double>>& moonlets) {
+// `values` are of all columns; a file that an earlier version began may lack some.
+void Recorder::append(const SeriesSample& row, const std::vector<double>& values,
+                      const std::vector<std::vector<double>>& moonlets) {
   const std::int64_t step = row.simulation.state().step;
   assert(moonlets.empty() || moonlets_);
   lock_->require_in_place();
-  series_->append(step, values_of(columns_, row));
-  for (const std::vector<double>& values : moonlets)
-    moonlets_->append(step, values);
+  std::vector<double> written;
+  for (std::size_t k = 0, column = 0; k < all_columns_.size() && column < columns_.size(); ++k)
+    if (std::string_view(all_columns_[k].name) == columns_[column].name) {
+      written.push_back(values[k]);
+      ++column;
+    }
+  assert(written.size() == columns_.size());
+  series_->append(step, written);
+  for (const std::vector<double>& of_moonlet : moonlets)
+    moonlets_->append(step, of_moonlet);
   report_restored();
 }
 

@@ -8,7 +8,6 @@
 #include "run_folder.hpp"
 
 #include <keeler/files/naming_guard.hpp>
-#include <keeler/io/provenance.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/runs/folder_lock.hpp>
 #include <keeler/runs/series_columns.hpp>
@@ -89,7 +88,8 @@ public:
 
 private:
   void open(std::optional<std::int64_t> resumed_at);
-  void append(const SeriesSample& row, const std::vector<std::vector<double>>& moonlets);
+  void append(const SeriesSample& row, const std::vector<double>& values,
+              const std::vector<std::vector<double>>& moonlets);
   void report_losses_on_root();
   std::optional<gravity::GravityEnergy> measure_gravity(const Simulation& simulation);
   void require_sound(const simulation::SimulationState& state, const diagnostics::ParticleMeans& means);
@@ -110,8 +110,9 @@ private:
   io::Provenance provenance_;
   OutputCounters counters_;
   Notice notice_;
-  std::vector<SeriesColumn> columns_;
-  std::optional<io::Series> series_; // on the root
+  std::vector<SeriesColumn> all_columns_; // on all ranks
+  std::vector<SeriesColumn> columns_;     // of the file, on the root
+  std::optional<io::Series> series_;      // on the root
   std::vector<MoonletColumn> moonlet_columns_;
   std::optional<io::Series> moonlets_;                      // on the root, if the scene has moonlets
   std::optional<ContactLog> contact_log_;                   // on the root, which receives the other ranks' contacts

@@ -161,7 +161,7 @@ SeriesSample::SeriesSample(const Scene& of_scene, const Simulation& of_simulatio
       waves(waves_in(of_simulation, means, of_scene.planet.frequencies)), gravity(of_gravity) {}
 
 void add_series_column(const OwnColumn& own) {
-  if (own.name == std::string_view("step")) // each row begins with it
+  if (own.name && own.name == std::string_view("step")) // each row begins with it
     fail_taken("column", own.name);
   registered_columns().add({own.name, own.unit, own.plot, ColumnKind::value, own.meaning, nullptr, own.in, own.value});
 }

@@ -4,7 +4,6 @@
 
 #include <keeler/diagnostics/epicyclic_waves.hpp>
 #include <keeler/diagnostics/particle_means.hpp>
-#include <keeler/gravity/fft.hpp>
 #include <keeler/quantities/quantity.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/simulation.hpp>

@@ -3,7 +3,6 @@
 
 #include "recorder.hpp"
 
-#include <keeler/io/provenance.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/runs/summary.hpp>
 #include <keeler/runs/transport.hpp>

@@ -4,7 +4,6 @@
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/mean.hpp>
 #include <keeler/diagnostics/viscosity.hpp>
-#include <keeler/gravity/fft.hpp>
 
 #include <fmt/format.h>
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <keeler/config/overrides.hpp>
-#include <keeler/scene/load.hpp>
 #include <keeler/scene/patch_scale.hpp>
 
 #include <optional>

@@ -6,6 +6,7 @@
 #include <keeler/decomposition/slabs.hpp>
 #include <keeler/diagnostics/particle_means.hpp>
 
+#include "step_control.hpp"
 #include <keeler/cells/order.hpp>
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
@@ -15,7 +16,6 @@
 #include <keeler/core/units.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/particles/by_id.hpp>
-#include <keeler/simulation/step_control.hpp>
 
 #include <fmt/format.h>
 
@@ -89,10 +89,6 @@ Simulation::Simulation(const Scene& scene, SimulationState state, const Communic
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&& other) noexcept = default;
 Simulation& Simulation::operator=(Simulation&& other) noexcept = default;
-
-const contact_solver::RestingCosts& Simulation::resting_costs() const {
-  return resting_->costs();
-}
 
 EnergyBalance Simulation::balance() const {
   return balance(means());

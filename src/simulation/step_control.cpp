@@ -1,4 +1,4 @@
-#include <keeler/simulation/step_control.hpp>
+#include "step_control.hpp"
 
 #include <keeler/core/field_table.hpp>
 #include <keeler/scene/scene.hpp>

@@ -6,7 +6,6 @@
 #include "unit/collision/spheres.hpp"
 
 #include <keeler/diagnostics/clusters.hpp>
-#include <keeler/forces/self_gravity.hpp>
 #include <keeler/gravity/direct.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 

@@ -4,7 +4,6 @@
 #include "unit/collision/ring.hpp"
 #include "unit/collision/spheres.hpp"
 
-#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/scene/load.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/simulation.hpp>

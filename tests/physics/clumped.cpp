@@ -8,7 +8,6 @@
 #include <keeler/diagnostics/analysis.hpp>
 #include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/diagnostics/viscosity.hpp>
-#include <keeler/forces/self_gravity.hpp>
 #include <keeler/initial_conditions/clumped.hpp>
 #include <keeler/scene/load.hpp>
 

@@ -7,7 +7,6 @@
 
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/clusters.hpp>
-#include <keeler/diagnostics/mean.hpp>
 #include <keeler/scene/load.hpp>
 
 #include <Eigen/Dense>

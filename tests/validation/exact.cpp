@@ -4,7 +4,6 @@
 #include <keeler/core/parallel.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/diagnostics/surface.hpp>
 #include <keeler/diagnostics/transmission.hpp>
 #include <keeler/gravity/fft.hpp>
 #include <keeler/scene/load.hpp>

@@ -3,7 +3,6 @@
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/diagnostics/clusters.hpp>
-#include <keeler/diagnostics/dispersion.hpp>
 
 #include <fmt/format.h>
 

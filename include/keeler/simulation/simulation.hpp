@@ -20,7 +20,6 @@
 
 namespace keeler::contact_solver {
 class RestingContacts;
-struct RestingCosts;
 } // namespace keeler::contact_solver
 
 namespace keeler::decomposition {
@@ -137,9 +136,6 @@ public:
   }
 
   const TimeSplit& time_split() const { return split_; } ///< up to now
-
-  /// Returns the cost of contacts at rest at the last kick.
-  const contact_solver::RestingCosts& resting_costs() const;
 
   /// Returns the ticks from kick to kick of state().forces[f], for the current step.
   std::int64_t ticks_between_kicks(std::size_t f) const {

@@ -51,7 +51,7 @@ struct MoonletTrack {
 
 /// The part of the state that belongs to one force.
 struct ForceState {
-  std::string name;                  ///< Force::name()
+  std::string name;                  ///< its table in scenes; "gravity" for self-gravity
   std::vector<Vec3> accelerations;   ///< of its last kick, m rad⁻², in the order of the particles
   double work = 0.0;                 ///< of its kicks on the motion beyond the shear, kg m² rad⁻²
   double azimuthal_gain = 0.0;       ///< change of Σ m c_y² by its kicks, kg m² rad⁻²

@@ -1,7 +1,5 @@
 #include "states.hpp"
 
-#include "job_list.hpp"
-
 #include <keeler/core/units.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/initial_conditions/clumped.hpp>

@@ -2,6 +2,7 @@
 
 #include "verdict.hpp"
 
+#include <keeler/batch/run_folders.hpp>
 #include <keeler/plot/figure.hpp>
 
 #include <fmt/format.h>
@@ -80,7 +81,7 @@ bool draw_study_figure(const StudyPlan& plan, const StudyMeans& means, const std
   } else if (!of_forces)
     reference_line(0.0, "");
   panel.curves.push_back({.points = points, .line = false, .marks = true});
-  std::filesystem::create_directories(folder / "figures");
+  batch::make_folder(folder / "figures");
   plot::save_figures({.panels = {panel}}, folder / "figures", "pareto");
   return true;
 }

@@ -37,7 +37,9 @@ std::string last_snapshot(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
     if (entry.path().filename().string().starts_with("snap_") && entry.path().extension() == ".hdf")
       files.push_back(fs::absolute(entry.path()).lexically_normal().string());
-  assert(!files.empty() && "a finished run has a snapshot");
+  if (files.empty())
+    throw IoError(fmt::format("'{}' has no snapshot any more; remove the folder, and the same command makes it again",
+                              folder.string()));
   return *std::max_element(files.begin(), files.end());
 }
 

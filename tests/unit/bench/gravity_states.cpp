@@ -1,4 +1,4 @@
-#include <keeler/bench/gravity_states.hpp>
+#include "gravity_states.hpp"
 
 #include <keeler/bench/gravity_choices.hpp>
 #include <keeler/cells/overlap.hpp>

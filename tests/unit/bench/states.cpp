@@ -1,4 +1,4 @@
-#include <keeler/bench/states.hpp>
+#include "states.hpp"
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>

@@ -4,7 +4,6 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
-#include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/surface.hpp>
 
 #include <doctest/doctest.h>

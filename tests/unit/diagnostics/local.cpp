@@ -1,4 +1,4 @@
-#include <keeler/diagnostics/local.hpp>
+#include "local.hpp"
 
 #include "states.hpp"
 

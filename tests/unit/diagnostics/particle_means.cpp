@@ -1,9 +1,9 @@
 #include <keeler/diagnostics/particle_means.hpp>
 
+#include "spin.hpp"
 #include <keeler/core/random.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
-#include <keeler/diagnostics/spin.hpp>
 
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>

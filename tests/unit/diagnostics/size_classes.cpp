@@ -1,4 +1,4 @@
-#include <keeler/diagnostics/size_classes.hpp>
+#include "size_classes.hpp"
 
 #include "states.hpp"
 

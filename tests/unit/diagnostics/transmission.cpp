@@ -3,7 +3,6 @@
 #include "states.hpp"
 
 #include <keeler/core/threads.hpp>
-#include <keeler/diagnostics/surface.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include <keeler/diagnostics/velocity_ellipsoid.hpp>
+#include "velocity_ellipsoid.hpp"
 
 #include "states.hpp"
 

@@ -5,7 +5,6 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/core/threads.hpp>
-#include <keeler/core/units.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/scene/load.hpp>
 

@@ -1,11 +1,11 @@
 #include <keeler/initial_conditions/clumped.hpp>
 
+#include "settling.hpp"
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/initial_conditions/settling.hpp>
 #include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>

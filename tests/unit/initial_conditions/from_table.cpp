@@ -4,7 +4,6 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>
 

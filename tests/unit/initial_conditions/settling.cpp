@@ -1,4 +1,4 @@
-#include <keeler/initial_conditions/settling.hpp>
+#include "settling.hpp"
 
 #include <keeler/core/random.hpp>
 #include <keeler/core/units.hpp>

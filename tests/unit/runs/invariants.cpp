@@ -5,7 +5,6 @@
 
 #include "scenes.hpp"
 
-#include <keeler/core/error.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/runs/state_hash.hpp>
 

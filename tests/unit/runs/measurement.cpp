@@ -4,7 +4,6 @@
 #include <keeler/runs/measurement.hpp>
 
 #include <keeler/core/units.hpp>
-#include <keeler/files/files.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/quantities/views.hpp>
 

@@ -3,7 +3,6 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/scene/load.hpp>
-#include <keeler/scene/scene.hpp>
 
 #include <string>
 #include <vector>

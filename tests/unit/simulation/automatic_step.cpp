@@ -1,10 +1,10 @@
 // The automatic step: its decisions, and equal runs for any number of threads and restarts.
+#include "step_control.hpp"
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
-#include <keeler/simulation/step_control.hpp>
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

@@ -1,6 +1,5 @@
 // Memory order affects speed only: after a permutation of the particles in memory a state evolves identically, bit for
 // bit, with all energy accounts of kicks and collisions.
-#include <keeler/cells/order.hpp>
 #include <keeler/core/field_table.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/scene/load.hpp>

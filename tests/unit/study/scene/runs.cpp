@@ -2,8 +2,6 @@
 
 #include "unit/files/disk.hpp"
 
-#include <keeler/core/error.hpp>
-
 #include <doctest/doctest.h>
 
 namespace runs_test {
