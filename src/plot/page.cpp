@@ -112,9 +112,9 @@ void Page::draw_pixels(std::span<const Colour> pixels, int width, int left, int 
     return; // drawing failed; pixels() and file_bytes() report it
   const std::ptrdiff_t stride = cairo_image_surface_get_stride(surface_);
   for (int y = 0; y < height; ++y) {
-    auto* row = reinterpret_cast<std::uint32_t*>(data + (top + y) * stride) + left;
+    auto* pixel_row = reinterpret_cast<std::uint32_t*>(data + (top + y) * stride) + left;
     for (int x = 0; x < width; ++x)
-      row[x] = packed(pixels[static_cast<std::size_t>(y * width + x)]);
+      pixel_row[x] = packed(pixels[static_cast<std::size_t>(y * width + x)]);
   }
   cairo_surface_mark_dirty(surface_);
 }
