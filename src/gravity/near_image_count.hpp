@@ -1,7 +1,7 @@
 // The number of images that a pairwise solver sums one by one: the cost of long boxes.
 #pragma once
 
-#include <keeler/gravity/images.hpp>
+#include <keeler/gravity/solver.hpp>
 
 #include <cstddef>
 
