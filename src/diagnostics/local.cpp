@@ -1,6 +1,7 @@
 #include "local.hpp"
 
 #include <keeler/cells/grid.hpp>
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/surface.hpp>
