@@ -196,27 +196,27 @@ StudyMeans means_of(const StudyChoices& choices, const std::vector<batch::RunRow
   return means;
 }
 
-Json runs_as_json(const StudyPlan& plan, const std::vector<batch::RunRow>& runs) {
-  Json rows = Json::array();
+batch::Json runs_as_json(const StudyPlan& plan, const std::vector<batch::RunRow>& runs) {
+  batch::Json rows = batch::Json::array();
   const std::vector<StudyNumber> numbers = study_numbers(plan);
   for (const batch::RunRow& run : runs) {
-    Json row = row_of(run, {{"setting", plan.choices.choices[run.run->point].name}});
+    batch::Json row = row_of(run, {{"setting", plan.choices.choices[run.run->point].name}});
     for (std::size_t n = 0; n < numbers.size(); ++n) {
       const std::optional<Estimate> value = run.numbers ? run.numbers->values[n] : std::nullopt;
-      row[numbers[n].column] = value ? quantities::or_null(value->value) : Json(nullptr);
+      row[numbers[n].column] = value ? quantities::or_null(value->value) : batch::Json(nullptr);
     }
     rows.push_back(row);
   }
   return rows;
 }
 
-Json means_as_json(const StudyMeans& means) {
-  Json rows = Json::array();
+batch::Json means_as_json(const StudyMeans& means) {
+  batch::Json rows = batch::Json::array();
   const std::vector<statistics::Scatter>& reference = means.settings[means.reference].scatter;
   for (const SettingMeans& setting : means.settings) {
-    Json row = {{"setting", setting.name},
-                {"runs", setting.finished},
-                {"reference", setting.point == means.settings[means.reference].point}};
+    batch::Json row = {{"setting", setting.name},
+                       {"runs", setting.finished},
+                       {"reference", setting.point == means.settings[means.reference].point}};
     for (std::size_t n = 0; n < means.numbers.size(); ++n) {
       const std::string& column = means.numbers[n].column;
       const double percent = 100.0 / std::fabs(reference[n].mean);

@@ -56,7 +56,7 @@ StudyMeans means_of(const StudyChoices& choices, const std::vector<batch::RunRow
                     const std::vector<StudyNumber>& numbers = study_numbers());
 
 /// Return the rows as objects keyed by column; unknown values are null.
-Json runs_as_json(const StudyPlan& plan, const std::vector<batch::RunRow>& runs);
-Json means_as_json(const StudyMeans& means);
+batch::Json runs_as_json(const StudyPlan& plan, const std::vector<batch::RunRow>& runs);
+batch::Json means_as_json(const StudyMeans& means);
 
 } // namespace keeler::study

@@ -18,8 +18,8 @@ namespace {
 
 // Returns the options that identify a study: a folder with others cannot continue. The scene is compared separately,
 // with the scenes of the existing runs.
-Json options_of(const StudyPlan& plan) {
-  Json choices = Json::array();
+batch::Json options_of(const StudyPlan& plan) {
+  batch::Json choices = batch::Json::array();
   for (const StudyChoice& choice : plan.choices.choices)
     choices.push_back(choice.name);
   return {{"study", name_of(plan.kind)},
@@ -82,7 +82,7 @@ batch::BatchResult study_scene(const SceneStudySettings& settings, const runs::R
   const StudyPlan plan = plan_study(settings);
   std::map<std::string, std::string> made = study_provenance(settings.arguments);
   made["scene"] = settings.scene;
-  const Json begun = open_study_folder(settings.folder, options_of(plan), made);
+  const batch::Json begun = open_study_folder(settings.folder, options_of(plan), made);
   for (auto& [key, value] : made)
     value = begun.value(key, value);
   const runs::FolderLock lock(settings.folder);
