@@ -28,7 +28,8 @@ void require_registrable_name(const std::string& what, const char* name) {
                                  what, name ? name : ""));
 }
 
-void require_complete_keys(const std::string& what, const std::string& name, const std::vector<Key>& keys) {
+void require_complete_keys(const std::string& what, const std::string& name, const std::vector<Key>& keys,
+                           KeyTable table) {
   std::set<std::string> names;
   for (const Key& key : keys) {
     if (!is_plain_name(key.path) || !names.insert(key.path).second)
@@ -39,6 +40,13 @@ void require_complete_keys(const std::string& what, const std::string& name, con
       throw UsageError(fmt::format("the key '{}' of the {} '{}' is incomplete (it needs a fallback or an example, a "
                                    "choice its choices, rows their columns, and none has alternatives); complete it",
                                    key.path, what, name));
+    if (table == KeyTable::shared && key.path == "law")
+      fail_taken_key(what, name, key.path);
+    if (table == KeyTable::shared && !key.only_with.key.empty())
+      throw UsageError(
+          fmt::format("the key '{}' of the {} '{}' depends on another key, which keys of a {} cannot; remove "
+                      "the condition",
+                      key.path, what, name, what));
   }
 }
 

@@ -13,17 +13,19 @@
 
 namespace keeler {
 
+/// Where scenes write the keys of entries: each entry has a table of its own, or all share one with the key "law".
+enum class KeyTable { own, shared };
+
 /// Throw UsageError about an entry to be added; `what` says in messages what it is, for example "force".
 /// Its name must begin with a letter and have only small letters, digits and '_'.
 void require_registrable_name(const std::string& what, const char* name);
-/// Its keys must be complete, without alternatives, and have names like entries.
-void require_complete_keys(const std::string& what, const std::string& name, const std::vector<Key>& keys);
+/// Its keys must be complete, without alternatives, and have names like entries; in a shared table none is called "law"
+/// or has a condition, since the entry's name is the condition of each.
+void require_complete_keys(const std::string& what, const std::string& name, const std::vector<Key>& keys,
+                           KeyTable table);
 [[noreturn]] void fail_taken(const std::string& what, const std::string& name);
 [[noreturn]] void fail_taken_key(const std::string& what, const std::string& name, const std::string& key);
 [[noreturn]] void fail_late(const std::string& what, const std::string& name);
-
-/// Where scenes write the keys of entries: each entry has a table of its own, or all share one with the key "law".
-enum class KeyTable { own, shared };
 
 /// Entries with a name, and some with `keys`. Safe in several threads.
 template<class Entry> class Registry {
@@ -36,11 +38,7 @@ public:
   void add(Entry entry) {
     require_registrable_name(what_, entry.*name_);
     if constexpr (requires { entry.keys; })
-      require_complete_keys(what_, entry.*name_, entry.keys);
-    if constexpr (requires { entry.keys; })
-      for (const Key& key : entry.keys)
-        if (table_ == KeyTable::shared && key.path == "law")
-          fail_taken_key(what_, entry.*name_, key.path);
+      require_complete_keys(what_, entry.*name_, entry.keys, table_);
     const std::lock_guard lock(guard_);
     for (const Entry& other : entries_)
       require_different(entry, other);

@@ -341,6 +341,7 @@ void add_quantity(const OwnQuantity& own) {
   if (own.name && find_quantity(joined(quantities_of(all_rows()), transport_quantities()), own.name))
     fail_taken("quantity", own.name);
   registered_quantities().add(own);
+  assert(own.value && "a quantity has a function");
 }
 
 std::string analyze_json(const std::filesystem::path& path) {

@@ -7,6 +7,7 @@
 #include <keeler/runs/own_numbers.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 #include <limits>
 #include <string_view>
@@ -164,6 +165,7 @@ void add_series_column(const OwnColumn& own) {
   if (own.name && own.name == std::string_view("step")) // each row begins with it
     fail_taken("column", own.name);
   registered_columns().add({own.name, own.unit, own.plot, ColumnKind::value, own.meaning, nullptr, own.in, own.value});
+  assert(own.value && "a column has a function");
 }
 
 const std::vector<SeriesColumn>& series_columns() {

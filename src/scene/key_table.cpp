@@ -1,13 +1,13 @@
 #include "key_table.hpp"
 
 #include "aggregates.hpp"
+#include "collision_keys.hpp"
 #include "material.hpp"
 #include "moonlets.hpp"
 #include "presets.hpp"
 #include "start_pattern_keys.hpp"
 
 #include <keeler/collision/restitution.hpp>
-#include <keeler/finders/finders.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/particles/sizes.hpp>
 #include <keeler/particles/start.hpp>
@@ -37,13 +37,6 @@ constexpr double largest_whole = 0x1p63; // one above the largest integer of TOM
 
 // All pairs are checked for overlap, and each moonlet adds columns to series.csv.
 constexpr std::size_t max_placed_bodies = 1000;
-
-std::vector<std::string> finder_names() {
-  std::vector<std::string> names;
-  for (const finders::FinderEntry& finder : finders::finder_table())
-    names.emplace_back(finder.name);
-  return names;
-}
 
 std::vector<std::string> quality_names() {
   std::vector<std::string> names = {"custom"};
@@ -187,57 +180,6 @@ std::vector<Key> patch_keys() {
        .unit = "1",
        .meaning = "seed of all random numbers",
        .range = from_0_to(largest_whole)},
-  };
-}
-
-std::vector<Key> collision_keys() {
-  using enum KeyType;
-  return {
-      {.path = "collisions.finder",
-       .type = choice,
-       .fallback = "\"certified\"",
-       .meaning = "method that finds the times of contact",
-       .choices = finder_names()},
-      {.path = "collisions.elastic_below",
-       .type = number,
-       .fallback = "1e-2",
-       .unit = "(r_i + r_j) Omega / 2",
-       .meaning = "contacts slower than this bounce elastically, which ends inelastic collapse",
-       .range = {.low = 0, .high = 100}},
-  };
-}
-
-// The keys that apply to every law.
-std::vector<Key> restitution_keys() {
-  return {
-      {.path = "collisions.restitution.largest",
-       .type = KeyType::number,
-       .fallback = "1.0",
-       .unit = "1",
-       .meaning =
-           "upper limit of the coefficient of restitution for impacts faster than elastic_below; below 1 for piles "
-           "that are to come to rest",
-       .range = {.low = 0, .high = 1},
-       .unhashed = "1.0"},
-  };
-}
-
-std::vector<Key> friction_keys() {
-  using enum KeyType;
-  return {
-      {.path = "collisions.friction.tangential_restitution",
-       .type = number,
-       .example = "0.5",
-       .unit = "1",
-       .meaning = "slip velocity of the surfaces after a contact over that before, if they do not slide throughout it",
-       .range = {.low = -1, .high = 1}},
-      {.path = "collisions.friction.coefficient",
-       .type = number,
-       .fallback = "\"unlimited\"",
-       .unit = "1",
-       .meaning = "Coulomb's coefficient: the tangential impulse is at most this times the normal impulse",
-       .range = from_0_to(1e6),
-       .choices = {"unlimited"}},
   };
 }
 

@@ -66,6 +66,13 @@ TEST_CASE("keys must be complete, and differ where laws share a table") {
   CHECK(fault_of([&] { laws.add({"b", {key("law")}}); }).starts_with("the key 'law' of the law 'b' is in its table"));
   CHECK(fault_of([&] { laws.add({"b", {key("c"), key("c")}}); }).starts_with("the law 'b' has a key 'c'"));
   CHECK(fault_of([&] { laws.add({"b", {key("c.d")}}); }).starts_with("the law 'b' has a key 'c.d'"));
+  Key conditional = key("c");
+  conditional.only_with = {"d", {"on"}};
+  CHECK(fault_of([&] { laws.add({"b", {conditional}}); }).starts_with("the key 'c' of the law 'b' depends on another"));
+  Registry<Law> starts("start", &Law::name, {}, KeyTable::shared); // also the first entry has no key "law"
+  CHECK(fault_of([&] {
+          starts.add({"a", {key("law")}});
+        }).starts_with("the key 'law' of the start 'a' is in its table"));
   Key bare = key("c"), choice = key("c"), rows = key("c");
   bare.fallback.clear();
   choice.type = KeyType::choice;
