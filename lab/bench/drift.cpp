@@ -1,6 +1,7 @@
 #include <keeler/bench/drift.hpp>
 
 #include "states.hpp"
+
 #include <keeler/bench/pair_set.hpp>
 #include <keeler/core/phase_progress.hpp>
 #include <keeler/diagnostics/dispersion.hpp>

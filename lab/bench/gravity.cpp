@@ -1,6 +1,7 @@
 #include <keeler/bench/gravity.hpp>
 
 #include "gravity_states.hpp"
+
 #include <keeler/bench/yardsticks.hpp>
 #include <keeler/cells/order.hpp>
 #include <keeler/core/simd.hpp>

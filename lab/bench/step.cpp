@@ -1,6 +1,7 @@
 #include <keeler/bench/step.hpp>
 
 #include "gravity_states.hpp"
+
 #include <keeler/comm/same_request.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/diagnostics/dispersion.hpp>

@@ -139,7 +139,7 @@ SweepResult sweep(const SweepSettings& settings, const runs::RunRequests& reques
   const std::vector<batch::PointRow> points = point_rows(runs, plan.points.size(), grid.quantities.columns().size());
   static_cast<batch::BatchResult&>(result) = result_of(runs);
   result.figure_fault = write_tables(grid, plan, folders, runs, points, settings.notice);
-  result.points = points_as_json(grid, plan, points);
+  result.points = std::make_shared<const batch::Json>(points_as_json(grid, plan, points));
   return result;
 }
 

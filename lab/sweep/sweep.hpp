@@ -9,6 +9,7 @@
 #include <keeler/batch/workers.hpp>
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
 namespace keeler::sweep {
@@ -20,9 +21,9 @@ struct SweepSettings : batch::BatchSettings {
 
 /// The state of the folder after a call.
 struct SweepResult : batch::BatchResult {
-  bool began = false;       ///< starting runs was requested
-  batch::Json points;       ///< the rows of points.csv, a list
-  std::string figure_fault; ///< reason why drawing the figure failed; empty if it did not
+  bool began = false;                        ///< starting runs was requested
+  std::shared_ptr<const batch::Json> points; ///< the rows of points.csv, a list; null if the sweep was stopped
+  std::string figure_fault;                  ///< reason why drawing the figure failed; empty if it did not
 };
 
 /// Executes the runs that are neither finished nor held by another program, and writes the tables. All input is checked

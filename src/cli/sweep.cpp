@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <memory>
 
 namespace keeler::cli {
@@ -27,8 +28,9 @@ struct SweepOptions {
 };
 
 void print_json(const sweep::SweepResult& result) {
+  assert(result.points);
   const batch::Json json = {
-      {"runs", result.runs}, {"finished", result.finished}, {"failed", result.failed}, {"points", result.points}};
+      {"runs", result.runs}, {"finished", result.finished}, {"failed", result.failed}, {"points", *result.points}};
   print("{}\n", json_text(json, 2));
 }
 

@@ -5,6 +5,7 @@
 #include "size_classes.hpp"
 #include "spin.hpp"
 #include "velocity_ellipsoid.hpp"
+
 #include <keeler/core/error.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/epicyclic_waves.hpp>

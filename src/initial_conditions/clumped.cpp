@@ -1,6 +1,7 @@
 #include <keeler/initial_conditions/clumped.hpp>
 
 #include "settling.hpp"
+
 #include <keeler/core/error.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/diagnostics/particle_means.hpp>

@@ -1,6 +1,7 @@
 #include "placing.hpp"
 
 #include "layer.hpp"
+
 #include <keeler/core/error.hpp>
 #include <keeler/core/exact_sum.hpp>
 #include <keeler/core/parallel.hpp>

@@ -1,19 +1,18 @@
 #include <keeler/simulation/simulation.hpp>
 
 #include "first_state.hpp"
-#include <keeler/cells/overlap.hpp>
-#include <keeler/contact_solver/resting_contacts.hpp>
-#include <keeler/decomposition/slabs.hpp>
-#include <keeler/diagnostics/particle_means.hpp>
-
 #include "step_control.hpp"
+
 #include <keeler/cells/order.hpp>
 #include <keeler/cells/overlap.hpp>
+#include <keeler/contact_solver/resting_contacts.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/exact_sum.hpp>
 #include <keeler/core/parallel.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/decomposition/slabs.hpp>
+#include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/particles/by_id.hpp>
 

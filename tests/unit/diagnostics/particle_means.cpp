@@ -1,6 +1,7 @@
 #include <keeler/diagnostics/particle_means.hpp>
 
 #include "spin.hpp"
+
 #include <keeler/core/random.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/diagnostics/dispersion.hpp>

@@ -1,6 +1,7 @@
 #include <keeler/initial_conditions/clumped.hpp>
 
 #include "settling.hpp"
+
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/interrupt.hpp>

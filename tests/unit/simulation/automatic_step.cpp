@@ -1,5 +1,6 @@
 // The automatic step: its decisions, and equal runs for any number of threads and restarts.
 #include "step_control.hpp"
+
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/initial_conditions/initial.hpp>
