@@ -201,7 +201,7 @@ runs 0 sweep "$work/texts.toml" -o "$work/texts" -q
 grep -q "^| 500 | 100% .| 'a'?system" "$work/texts/report.md" || fail "texts: $(cat "$work/texts/report.md")"
 grep -q "100% | 'a'?system" "$work/texts/figure.svg" || fail "texts: no label in figure.svg"
 rm "$work/texts/report.md" "$work/texts/figure.png"
-mkdir "$work/texts/figure.png"
+mkdir -p "$work/texts/figure.png/kept" # an empty folder would be replaced
 runs 4 sweep "$work/texts.toml" -o "$work/texts" -q --json
 one_line "a figure that fails" "'$work/texts/figure.png'"
 [ "$(text finished "$work/out")" -eq 4 ] || fail "a figure that fails: $(cat "$work/out")"
