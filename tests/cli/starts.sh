@@ -31,7 +31,7 @@ runs 0 check "$work/dense.toml"
 prints "check" "$notice"
 prints "check" "mid-plane filling at the start     0.55"
 runs 0 generate "$work/dense.toml" -o "$work/dense.hdf"
-one_line "generate" "$notice"
+grep -qF "keeler: note: $notice" "$work/err" || fail "generate: no notice: $(cat "$work/err")"
 runs 0 run "$work/dense.toml" -o "$work/run"
 grep -qF "$notice" "$work/err" || fail "run: no notice: $(cat "$work/err")"
 prints "split" "  start                            "
@@ -45,7 +45,8 @@ refuses "a mode that does not fit the box" "row 1 of particles.modes.outward has
 
 # Density patterns, and a fraction of a snapshot's particles.
 runs 0 generate "$work/scene.toml" --set 'particles.wake={contrast=0.5, wavelength=30, pitch=25}' -o "$work/wake.hdf"
-one_line "a wake" "the wake has a wavelength of 26.83 m and a pitch of 26.57 degrees (2 x 1 waves fit the box)"
+grep -qF "keeler: note: the wake has a wavelength of 26.83 m and a pitch of 26.57 degrees (2 x 1 waves fit the box)" "$work/err" ||
+  fail "a wake: $(cat "$work/err")"
 refuses "a step beyond the box" "particles.step.between is [-10, 50] (it must be two rising x within the box, from -30 to 30" \
   generate "$work/scene.toml" --set 'particles.step={between=[-10,50], factor=2.0}' -o "$work/none.hdf"
 
