@@ -112,9 +112,9 @@ def dense():
 
 
 def cuts():
-    ordered = sorted(rows("cuts"), key=lambda r: (-float(r["time.step"]), float(r["collisions.elastic_below"]), r["carried"]))
+    ordered = sorted(rows("cuts"), key=lambda r: (-float(r["time.step"]), float(r["collisions.elastic_below_speed"]), r["carried"]))
     return table(["step, orbits", "elastic below, rΩ"] + STATE_HEAD,
-                 [[r["time.step"], r["collisions.elastic_below"]] + state_cells(r) for r in ordered])
+                 [[r["time.step"], r["collisions.elastic_below_speed"]] + state_cells(r) for r in ordered])
 
 
 def random_speed(run):

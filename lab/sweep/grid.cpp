@@ -218,7 +218,7 @@ private:
       config::fail_at(at, fmt::format("the grid has more than {} keys (no scene has so many); remove some", max_keys));
     if (key == seed_key)
       config::fail_at(at, "particles.seed is given by seeds (a run has one seed); write seeds = [...]");
-    if (!keys_.insert(key).second)
+    if (!keys_.insert(scene::scene_schema().current_path(key)).second)
       config::fail_at(at, fmt::format("{} is given twice in this grid (a run has one value of it); remove one", key));
     return key;
   }

@@ -187,7 +187,8 @@ std::string in_words(const forces::SatellitePassage& passage) {
   return fmt::format(
       "the satellite's passage at orbit {} moves particles at {} of the speed at which it crosses the cell, and "
       "drags them along: up to {:g} the cell behaves as a ring, at 1 particles are thrown across it; end the run "
-      "before this passage, or run each passage separately (--from the last snapshot, with upright_after counted from "
+      "before this passage, or run each passage separately (--from the last snapshot, with downstream_time counted "
+      "from "
       "that passage)",
       format_number(passage.orbits, 4), format_number(passage.drag, 2), forces::doubtful_drag);
 }

@@ -126,6 +126,8 @@ ExitCode generate_from_table(const GenerateOptions& options, const std::vector<s
   const io::ParticleTable table = io::read_particle_table(options.table);
   Patch patch = initial_conditions::patch_from_table(table, of);
   remove_overlaps(patch, options, table);
+  for (const std::string& notice : of.scene.notices)
+    options.talk.notice()("note: " + notice);
   if (table.velocities.empty())
     options.talk.notice()("note: the table has no velocities: all orbits are circular");
   // The scene cannot reproduce this state, so the scene in the snapshot starts from the file.
@@ -157,7 +159,7 @@ ExitCode generate(const GenerateOptions& options, const std::vector<std::string>
     patch = unless_stopped(stopped, [&] { return make_patch(scene, options.talk); });
   }
   for (const std::string& notice : scene.notices)
-    options.talk.notice()(notice);
+    options.talk.notice()("note: " + notice);
   print_warnings(scene, patch, options.talk);
   meta.scene = decided_by(scene, initial_conditions::scale_of(patch)).resolved;
   write_snapshot(options.output, patch, meta);

@@ -48,7 +48,7 @@ ExitCode tile(const TileOptions& options, const std::vector<std::string>& argume
   require_new_file(options.output, options.force, "a state");
   io::Snapshot snapshot = io::read_snapshot(options.file);
   // The scene cannot reproduce this state, so the scene in the snapshot starts from the file, with all particles.
-  const Scene scene = parse_scene(snapshot.meta.scene, options.file, {"start.keep=1.0"}, options.output);
+  const Scene scene = parse_scene(snapshot.meta.scene, options.file, {"start.keep_fraction=1.0"}, options.output);
   const Patch patch = initial_conditions::patch_from_snapshot(std::move(snapshot.patch), options.file, scene);
   cells::require_no_overlap(patch, "'" + options.file + "'");
   const initial_conditions::TiledPatch tiled(patch, options.nx, options.ny);

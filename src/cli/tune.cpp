@@ -160,6 +160,8 @@ ExitCode tune_scene(const TuneOptions& options) {
   tune::TuneSettings settings = tolerances(options);
   settings.max_threads = threads();
   const Scene scene = options.scene.load();
+  for (const std::string& notice : scene.notices)
+    options.talk.notice()("note: " + notice);
   require_writable_output(options);
   const tune::Tuning tuning = measure(scene, settings, options.talk);
   const std::vector<tune::ChosenKey> keys = chosen_keys(tuning, settings, scene);

@@ -245,7 +245,7 @@ private:
   void change(std::uint32_t i, const Elements& elements, double time) {
     if (orbits_.event_count(i) == max_collisions)
       throw InvariantError(fmt::format(
-          "particle {} collided more than {} times in one step (an event storm); raise collisions.elastic_below",
+          "particle {} collided more than {} times in one step (an event storm); raise collisions.elastic_below_speed",
           step_.particles.ids[i], max_collisions));
     const State then = state_at(elements, step_.frequencies, Rotation());
     if (!(then.position.allFinite() && then.velocity.allFinite()))

@@ -12,6 +12,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <tuple>
 
@@ -106,6 +107,13 @@ DocumentValue as_whole_number(DocumentValue value, const std::string& path, cons
   return key && key->type == KeyType::integer ? DocumentValue(static_cast<std::int64_t>(*number)) : value;
 }
 
+// Fails if the document has the path of the entry: the one or the other is a former name.
+void refuse_twice(const TomlDocument& document, const DocumentEntry& entry) {
+  if (const DocumentEntry* const earlier = find_entry(document, entry.path))
+    fail_at(entry.key_location, fmt::format("{} cannot be combined with {} (its present name); remove one of the two",
+                                            entry.former.empty() ? earlier->former : entry.former, entry.path));
+}
+
 // Flattens the tables that the schema has, so that it bounds depth and length of paths.
 class Flattening {
 public:
@@ -116,10 +124,13 @@ public:
       add(prefix + (is_plain(key.str()) ? std::string(key.str()) : in_quotes(key.str())), key.source().begin, node);
   }
 
-  void add(const std::string& path, const toml::source_position& position, const toml::node& node) {
+  void add(const std::string& written, const toml::source_position& position, const toml::node& node) {
+    const std::string path = schema_.current_path(written);
     entries_.push_back(
         {position,
          {path, location(position), location(node.source().begin), as_whole_number(value_of(node), path, schema_)}});
+    if (path != written)
+      entries_.back().entry.former = written;
     const Section* const section = schema_.find_section(path);
     if (const toml::table* inner = node.as_table(); inner && section)
       add_table(*inner, path + ".");
@@ -133,8 +144,10 @@ public:
       return std::tie(a.position.line, a.position.column) < std::tie(b.position.line, b.position.column);
     });
     TomlDocument document(schema_);
-    for (Positioned& positioned : entries_)
+    for (Positioned& positioned : entries_) {
+      refuse_twice(document, positioned.entry);
       document.add(std::move(positioned.entry));
+    }
     return document;
   }
 
@@ -224,8 +237,9 @@ DocumentValue value_of_word(const std::string& word, const std::string& path, co
 std::vector<DocumentEntry> parse_override_value(const std::string& text, const std::string& path,
                                                 const std::string& key_location, const std::string& value_location,
                                                 const Schema& schema) {
+  const std::string current = schema.current_path(path);
   const std::vector<DocumentEntry> word = {
-      {path, key_location, value_location, value_of_word(text, path, schema), true}};
+      {current, key_location, value_location, value_of_word(text, current, schema), true, current == path ? "" : path}};
   const std::string line = "value = " + text;
   if (const std::optional<files::TomlExcess> excess = files::toml_excess(line)) {
     const std::size_t begin = text.find_first_not_of(" \t");
@@ -241,13 +255,23 @@ std::vector<DocumentEntry> parse_override_value(const std::string& text, const s
     Flattening flattening(value_location, schema);
     flattening.add(path, {}, *table.get("value"));
     for (const DocumentEntry& entry : std::move(flattening).document())
-      entries.push_back(
-          {entry.path, entry.path == path ? key_location : value_location, value_location, entry.value, true});
+      entries.push_back({entry.path, entry.path == current ? key_location : value_location, value_location, entry.value,
+                         true, entry.former});
   } catch (const toml::parse_error&) {
     return word;
   }
   assert(!entries.empty());
   return entries;
+}
+
+std::vector<std::string> former_name_notices(const TomlDocument& document) {
+  std::vector<std::string> notices;
+  std::set<std::string> named;
+  for (const DocumentEntry& entry : document)
+    if (!entry.former.empty() && named.insert(declared_path(entry.former)).second)
+      notices.push_back(fmt::format("{}: '{}' is now called '{}'", entry.key_location, declared_path(entry.former),
+                                    declared_path(entry.path)));
+  return notices;
 }
 
 void fail_at(const std::string& location, const std::string& message) {

@@ -35,6 +35,7 @@ struct DocumentEntry {
   std::string value_location; ///< of the value
   DocumentValue value;
   bool overridden = false; ///< an override gave it
+  std::string former{};    ///< the path as it was written, if that has a former name
 };
 
 /// Entries in the order of the file, overrides last. No path occurs twice. Tables that the schema lacks are not
@@ -75,7 +76,8 @@ inline const DocumentEntry* find_entry(const TomlDocument& document, const std::
   return document.find(path);
 }
 
-/// Parses a text; messages call it `name`. Throws UsageError if the text is not TOML.
+/// Parses a text; messages call it `name`. Paths have the present names. Throws UsageError if the text is not TOML, or
+/// gives a key by its present and its former name.
 TomlDocument parse_document(const std::string& text, const std::string& name, const Schema& schema);
 
 /// Parses the value of an override: TOML, or else the text as a string (as a number, if the key takes one and the text
@@ -84,6 +86,9 @@ TomlDocument parse_document(const std::string& text, const std::string& name, co
 std::vector<DocumentEntry> parse_override_value(const std::string& text, const std::string& path,
                                                 const std::string& key_location, const std::string& value_location,
                                                 const Schema& schema);
+
+/// Returns a line for each former name in the document, with the location of its first use.
+std::vector<std::string> former_name_notices(const TomlDocument& document);
 
 /// Throws UsageError "location: message".
 [[noreturn]] void fail_at(const std::string& location, const std::string& message);

@@ -68,9 +68,11 @@ void add_parent_tables(TomlDocument& document, const std::string& path, const st
       document.add({path.substr(0, dot), location, location, TomlTable{}, true});
 }
 
-void apply(TomlDocument& document, const std::string& path, const std::vector<DocumentEntry>& entries,
-           const std::string& location, std::vector<std::string>& notices) {
+// The first entry is what the override names, the others are within it.
+void apply(TomlDocument& document, const std::vector<DocumentEntry>& entries, const std::string& location,
+           std::vector<std::string>& notices) {
   assert(!entries.empty());
+  const std::string& path = entries.front().path;
   erase_within(document, path);
   add_parent_tables(document, path, location);
   for (const DocumentEntry& entry : entries) {
@@ -98,11 +100,11 @@ Override from_command_line(const std::string& text) {
 
 void apply_text(TomlDocument& document, const std::string& path, const std::string& text, const std::string& location,
                 std::vector<std::string>& notices) {
-  apply(document, path, {{path, location, location, text, true}}, location, notices);
+  apply(document, {{path, location, location, text, true}}, location, notices);
 }
 
 void apply_override(TomlDocument& document, const Override& override, std::vector<std::string>& notices) {
-  apply(document, override.key,
+  apply(document,
         parse_override_value(override.value, override.key, override.key_location, override.value_location,
                              document.schema()),
         override.value_location, notices);

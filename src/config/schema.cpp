@@ -34,10 +34,23 @@ Schema::Schema(std::vector<Key> keys, std::vector<Section> sections)
   assert(std::all_of(keys_.begin(), keys_.end(), [&](const Key& key) {
     return std::all_of(key.alternatives.begin(), key.alternatives.end(), [&](const auto& k) { return find_key(k); });
   }));
+  assert(std::all_of(keys_.begin(), keys_.end(), [&](const Key& key) { return current_path(key.path) == key.path; }));
+}
+
+std::string Schema::current_path(std::string path) const {
+  for (const Section& section : sections_)
+    if (const std::string& former = section.former_path; !former.empty() && (path + ".").starts_with(former + "."))
+      path.replace(0, former.size(), section.path);
+  const std::string wanted = declared_path(path);
+  for (const Key& key : keys_)
+    if (!key.former_name.empty() && wanted == key.section() + "." + key.former_name)
+      path.replace(path.rfind('.') + 1, std::string::npos, key.name());
+  return path;
 }
 
 const Key* Schema::find_key(const std::string& path) const {
-  return declared(keys_, path);
+  const Key* const key = declared(keys_, path);
+  return key ? key : declared(keys_, current_path(path));
 }
 
 const Section* Schema::find_section(const std::string& path) const {

@@ -19,6 +19,7 @@ struct Section {
   bool repeated = false;           ///< a list of tables, [[path]]: table n is path[n], from 1, with keys path[n].key
   std::size_t max_count = 1;       ///< upper limit of the tables in the list
   bool defaults_if_absent = false; ///< the defaults of its keys are in force even where the table is absent
+  std::string former_path{}; ///< an earlier path, which documents may still use; of one table, without hashed keys
 
   /// Returns the header as a document writes it.
   std::string header() const { return repeated ? "[[" + path + "]]" : "[" + path + "]"; }
@@ -35,8 +36,11 @@ public:
   const std::vector<Key>& keys() const { return keys_; }
   const std::vector<Section>& sections() const { return sections_; }
 
+  /// Returns the path with the present names of a table and a key that it calls by former names.
+  std::string current_path(std::string path) const;
+
   /// Returns the declaration for a path, nullptr if there is none. The path may lie in a list of tables:
-  /// moonlet[2].radius has the declaration of moonlet.radius.
+  /// moonlet[2].radius has the declaration of moonlet.radius. find_key() accepts former names.
   const Key* find_key(const std::string& path) const;
   const Section* find_section(const std::string& path) const;
 

@@ -176,7 +176,8 @@ std::string Settings::motion() const {
     for (const std::string& path : paths_of(key))
       if (key.effect == KeyEffect::motion && has(path))
         if (const std::string value = toml_of(key, path); key.unhashed.empty() || value != key.unhashed)
-          out += fmt::format("{} = {}\n", path, value);
+          out +=
+              fmt::format("{} = {}\n", key.former_name.empty() ? path : key.section() + "." + key.former_name, value);
   return out;
 }
 

@@ -51,7 +51,8 @@ public:
   /// Returns every key in force as TOML, in the order of the schema. The text reads back to equal settings.
   std::string resolved() const;
 
-  /// Returns a line "path = value" for each key in force that affects the motion.
+  /// Returns a line "path = value" for each key in force that affects the motion, with former names: runs keep their
+  /// state hash.
   std::string motion() const;
 
 private:

@@ -142,7 +142,7 @@ std::unique_ptr<Force> make(const Parameters& p, const ForceContext& context) {
   orbit.guiding_x = p.number("distance");
   orbit.passage = two_pi * p.number("passage");
   orbit.every = two_pi * p.number("every");
-  orbit.upright = orbit.passage + two_pi * p.number("upright_after");
+  orbit.upright = orbit.passage + two_pi * p.number("downstream_time");
   orbit.eccentricity = p.number("eccentricity");
   orbit.phase = degree * p.number("eccentricity_phase");
   orbit.inclination = p.number("inclination");
@@ -161,6 +161,11 @@ Key needed(Key key) {
   return key;
 }
 
+Key formerly(const char* name, Key key) {
+  key.former_name = name;
+  return key;
+}
+
 } // namespace
 
 std::optional<SatellitePassage> dragging_passage(const Parameters& parameters, double orbital_frequency,
@@ -168,7 +173,7 @@ std::optional<SatellitePassage> dragging_passage(const Parameters& parameters, d
                                                  double until) {
   assert(parameters.number("distance") != 0.0);
   const double first = parameters.number("passage"), every = parameters.number("every");
-  const double upright = first + parameters.number("upright_after");
+  const double upright = first + parameters.number("downstream_time");
   const double h =
       newton_g(orbital_frequency) * parameters.number("mass") / std::pow(std::fabs(parameters.number("distance")), 3);
   const double drag_per_orbit = 4.0 / (3.0 * std::sqrt(3.0)) * h * two_pi / (frequencies.kappa * frequencies.kappa);
@@ -195,10 +200,12 @@ ForceEntry satellite_entry() {
        number("every", "0.0", "orbits",
               "its synodic period, a / (S |distance|), from passage to passage; 0: a single passage",
               {.low = 0, .high = 1e6}),
-       number("upright_after", "0.0", "orbits",
-              "time after the passage at which neighbouring streamlines have the phases that they have side by side "
-              "in a ring",
-              {.low = -1e6, .high = 1e6}),
+       formerly(
+           "upright_after",
+           number("downstream_time", "0.0", "orbits",
+                  "time after the passage at which neighbouring streamlines have the phases that they have side by "
+                  "side in a ring",
+                  {.low = -1e6, .high = 1e6})),
        number("eccentricity", "0.0", "m", "its eccentricity times its distance from the planet", lengths),
        number("eccentricity_phase", "0.0", "degrees", "phase of its epicycle at the passage; 0: at its innermost point",
               turn),

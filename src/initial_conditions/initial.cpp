@@ -42,8 +42,8 @@ void require_same_planet(const Patch& patch, const Scene& scene, const std::stri
                     planet.orbital_frequency, planet.frequencies.kappa, planet.frequencies.nu));
 }
 
-// Keeps each particle with probability start.keep. The decision depends on id and seed only: equal for all states of a
-// run, and a lower probability keeps a subset. Collective.
+// Keeps each particle with probability start.keep_fraction. The decision depends on id and seed only: equal for all
+// states of a run, and a lower probability keeps a subset. Collective.
 Patch thinned(Patch patch, const Scene& scene, const Communicator& ranks) {
   assert(patch.ids.size() == patch.size());
   std::vector<bool> keeps(patch.size());
@@ -54,7 +54,7 @@ Patch thinned(Patch patch, const Scene& scene, const Communicator& ranks) {
   ranks.together([&] {
     if (!keeps_some)
       throw UsageError(
-          fmt::format("start.keep = {} keeps none of the {} of '{}'; raise it, or try another start.keep_seed",
+          fmt::format("start.keep_fraction = {} keeps none of the {} of '{}'; raise it, or try another start.keep_seed",
                       format_number(scene.start_keep), pluralize(count, "particle"), *scene.start_from));
   });
   const auto thin = [&](auto& rows) { // also for empty spins

@@ -41,7 +41,7 @@ template<class Column> void for_each_column(const Column& column) {
       "TangentialSpeed", "m/s", "relative speed across the line of centres before the contact",
       [](auto& row) -> auto& { return row.tangential_speed; });
   column(
-      "Fast", "1", "1: faster than collisions.elastic_below; 0: slower, and elastic",
+      "Fast", "1", "1: faster than collisions.elastic_below_speed; 0: slower, and elastic",
       [](auto& row) -> auto& { return row.fast; });
 }
 

@@ -65,7 +65,7 @@ PythonSnapshot generate(const Scene& scene, bool clumped) {
 // Tiles a snapshot. The scene cannot reproduce this state, so the new scene starts from a file, with all particles.
 PythonSnapshot tile(const PythonSnapshot& snapshot, std::size_t nx, std::size_t ny, const std::string& name) {
   return make_interruptibly([&] {
-    const Scene scene = parse_scene(snapshot.scene, name, {"start.keep=1.0"}, name);
+    const Scene scene = parse_scene(snapshot.scene, name, {"start.keep_fraction=1.0"}, name);
     const Patch patch = initial_conditions::patch_from_snapshot(snapshot.patch, name, scene);
     cells::require_no_overlap(patch, "'" + name + "'");
     return PythonSnapshot{initial_conditions::tiled_patch(patch, nx, ny), scene.resolved, true};

@@ -216,7 +216,7 @@ void send_notices(const Scene& scene, const RunOptions& options, const scene::Pa
   if (!options.notice)
     return;
   for (const std::string& notice : scene.notices)
-    options.notice(notice);
+    options.notice("note: " + notice);
   for (const std::string& warning : advice::warnings(scene, scale))
     options.notice("note: " + warning);
 }

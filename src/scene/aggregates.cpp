@@ -44,18 +44,20 @@ std::vector<Key> aggregate_keys() {
            .unit = "1",
            .meaning = "number of particles that form a ball at the start, one ball per table [[particles.aggregate]]",
            .range = {.low = 1, .high = 1e9}}),
-      own({.path = "filling",
+      own({.path = "filling_factor",
            .type = number,
            .fallback = "0.5",
            .unit = "1",
            .meaning = "filling factor of the ball, whose particles are packed at random",
-           .range = {.low = 0, .high = 0.64, .low_open = true}}),
-      own({.path = "place",
+           .range = {.low = 0, .high = 0.64, .low_open = true},
+           .former_name = "filling"}),
+      own({.path = "position",
            .type = triple,
            .fallback = "[0.0, 0.0, 0.0]",
            .unit = "m",
            .meaning = "centre of the ball: outward, along the orbit and up from the centre of the box",
-           .range = {.low = -1e7, .high = 1e7}}),
+           .range = {.low = -1e7, .high = 1e7},
+           .former_name = "place"}),
       own({.path = "spin",
            .type = number,
            .fallback = "1.0",
@@ -80,9 +82,9 @@ std::vector<AggregateSettings> read_aggregates(config::Settings& settings, const
                       "lower it or give the scene more particles",
                       table, count, pluralize(particles.count, "particle"), total));
     total += count;
-    const std::vector<double> position = p.numbers("place");
+    const std::vector<double> position = p.numbers("position");
     aggregates.push_back({.count = count,
-                          .filling = p.number("filling"),
+                          .filling = p.number("filling_factor"),
                           .position = {position[0], position[1], position[2]},
                           .spin = p.number("spin")});
   }

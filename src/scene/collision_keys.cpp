@@ -24,25 +24,27 @@ std::vector<Key> collision_keys() {
        .fallback = "\"certified\"",
        .meaning = "method that finds the times of contact",
        .choices = finder_names()},
-      {.path = "collisions.elastic_below",
+      {.path = "collisions.elastic_below_speed",
        .type = number,
        .fallback = "1e-2",
        .unit = "(r_i + r_j) Omega / 2",
        .meaning = "contacts slower than this bounce elastically, which ends inelastic collapse",
-       .range = {.low = 0, .high = 100}},
+       .range = {.low = 0, .high = 100},
+       .former_name = "elastic_below"},
   };
 }
 
 std::vector<Key> restitution_keys() {
   return {
-      {.path = "collisions.restitution.largest",
+      {.path = "collisions.restitution.max_coefficient",
        .type = KeyType::number,
        .fallback = "1.0",
        .unit = "1",
        .meaning =
-           "upper limit of the coefficient of restitution for impacts faster than elastic_below; below 1 for piles "
-           "that are to come to rest",
+           "upper limit of the coefficient of restitution for impacts faster than elastic_below_speed; below 1 for "
+           "piles that are to come to rest",
        .range = {.low = 0, .high = 1},
+       .former_name = "largest",
        .unhashed = "1.0"},
   };
 }

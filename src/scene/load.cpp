@@ -53,9 +53,9 @@ std::optional<collision::Friction> read_friction(const config::Settings& setting
 collision::CollisionSettings read_collisions(config::Settings& settings, const std::string& name) {
   collision::CollisionSettings collisions;
   collisions.finder = settings.text("collisions.finder");
-  collisions.elastic_below = settings.number("collisions.elastic_below");
+  collisions.elastic_below = settings.number("collisions.elastic_below_speed");
   collisions.restitution = make_law(collision::restitution_laws(), "collisions.restitution", settings, name);
-  if (const double largest = settings.number("collisions.restitution.largest"); largest < 1.0)
+  if (const double largest = settings.number("collisions.restitution.max_coefficient"); largest < 1.0)
     collisions.restitution = [law = collisions.restitution, largest](const Impact& impact) {
       return std::min(largest, law(impact));
     };
@@ -102,12 +102,12 @@ std::optional<ContactLogSettings> read_contact_log(config::Settings& settings) {
     return {};
   return ContactLogSettings{settings.number("output.collisions.min_speed"),
                             settings.number("output.collisions.min_radius_sum"),
-                            settings.number("output.collisions.share")};
+                            settings.number("output.collisions.fraction")};
 }
 
 void read_start(Scene& scene, config::Settings& settings, const std::string& name) {
   scene.start_from = settings.file_path("start.from", name);
-  scene.start_keep = settings.number("start.keep");
+  scene.start_keep = settings.number("start.keep_fraction");
   scene.start_keep_seed = static_cast<std::uint64_t>(settings.integer("start.keep_seed"));
 }
 
@@ -127,11 +127,14 @@ void read_resting_contacts(Scene& scene, config::Settings& settings, Purpose pur
 
 Scene read_scene(config::TomlDocument document, const std::string& name, Purpose purpose,
                  std::vector<std::string> notices) {
+  const std::vector<std::string> former_names = former_name_notices(document);
   add_gravity_of_quality(document);
   check_document(document, name);
   config::Settings settings(std::move(document));
   Scene scene;
   scene.notices = std::move(notices);
+  if (purpose != Purpose::resume)
+    std::ranges::copy(former_names, std::back_inserter(scene.notices));
   scene.title = settings.text("title");
   scene.planet = read_planet(settings);
   if (settings.has("start"))

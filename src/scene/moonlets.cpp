@@ -47,12 +47,13 @@ std::vector<Key> moonlet_keys() {
            .meaning = "mass of the body",
            .range = {.low = 1e-20, .high = 1e24}, // follows from the ranges of radius and density
            .alternatives = {"moonlet.density"}}),
-      own({.path = "place",
+      own({.path = "position",
            .type = triple,
            .fallback = "[0.0, 0.0, 0.0]",
            .unit = "m",
            .meaning = "position at the start: outward, along the orbit and up from the centre of the box",
-           .range = {.low = -1e7, .high = 1e7}}),
+           .range = {.low = -1e7, .high = 1e7},
+           .former_name = "place"}),
       own({.path = "velocity",
            .type = triple,
            .fallback = "[0.0, 0.0, 0.0]",
@@ -73,7 +74,7 @@ std::vector<MoonletSettings> read_moonlets(config::Settings& settings, const std
           settings.location(table + ".mass"),
           fmt::format("{}.mass gives a density of {} kg/m^3, but it must be {}; change the mass or the radius", table,
                       format_number(density, 3), material_densities.words()));
-    moonlets.push_back({radius, mass, vector_of(p.numbers("place")), vector_of(p.numbers("velocity"))});
+    moonlets.push_back({radius, mass, vector_of(p.numbers("position")), vector_of(p.numbers("velocity"))});
   }
   return moonlets;
 }

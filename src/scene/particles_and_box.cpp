@@ -124,17 +124,18 @@ void require_long_waves(const Scene& scene, const config::Settings& settings) {
 }
 
 void read_step(const Scene& scene, const config::Settings& settings, DensityPattern& pattern) {
-  const std::vector<double> between = settings.numbers("particles.step.between");
+  const std::vector<double> between = settings.numbers("particles.density_step.between");
   const double edge = 0.5 * scene.size_x;
   if (!(between[0] < between[1] && between[0] >= -edge && between[1] <= edge && between[1] - between[0] < scene.size_x))
     config::fail_at(
-        settings.location("particles.step.between"),
-        fmt::format("particles.step.between is [{}, {}] (it must be two rising x within the box, from {} to {}, and "
-                    "not all of it); correct it",
-                    format_number(between[0]), format_number(between[1]), format_number(-edge), format_number(edge)));
+        settings.location("particles.density_step.between"),
+        fmt::format(
+            "particles.density_step.between is [{}, {}] (it must be two rising x within the box, from {} to {}, and "
+            "not all of it); correct it",
+            format_number(between[0]), format_number(between[1]), format_number(-edge), format_number(edge)));
   pattern.low = between[0];
   pattern.high = between[1];
-  pattern.factor = settings.number("particles.step.factor");
+  pattern.factor = settings.number("particles.density_step.factor");
 }
 
 // Rounds the wave vector so that whole waves fit the periodic box along both sides.
@@ -176,7 +177,7 @@ void read_wake(Scene& scene, config::Settings& settings, DensityPattern& pattern
 
 void read_pattern(Scene& scene, config::Settings& settings) {
   DensityPattern pattern{.size_x = scene.size_x, .size_y = scene.size_y};
-  if (settings.has("particles.step"))
+  if (settings.has("particles.density_step"))
     read_step(scene, settings, pattern);
   if (settings.has("particles.wake"))
     read_wake(scene, settings, pattern);

@@ -43,7 +43,7 @@ double distance(const Vec3& a, const Vec3& b, const Scene& scene) {
 }
 
 void check_in_box(const PlacedBody& body, const Scene& scene, const config::Settings& settings) {
-  const std::string size = body.table + "." + body.size_key, key = body.table + ".place";
+  const std::string size = body.table + "." + body.size_key, key = body.table + ".position";
   if (!(2.0 * body.radius <= std::min(scene.size_x, scene.size_y)))
     config::fail_at(
         settings.location(size),
@@ -59,7 +59,7 @@ void check_in_box(const PlacedBody& body, const Scene& scene, const config::Sett
     config::fail_at(
         settings.location(body.table),
         fmt::format("{} reaches {} m from the mid-plane (more than the longer side of the box, {} m: too far for a "
-                    "ring); lower its place and its vertical velocity",
+                    "ring); lower its position and its vertical velocity",
                     body.table, format_number(body.height, 4), format_number(longer, 4)));
 }
 

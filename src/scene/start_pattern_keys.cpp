@@ -53,14 +53,14 @@ std::vector<Key> pattern_keys() {
   using enum KeyType;
   using enum KeyEffect;
   return {
-      {.path = "particles.step.between",
+      {.path = "particles.density_step.between",
        .type = pair,
        .example = "[-20.0, 20.0]",
        .unit = "m",
        .meaning = "x between which the surface density differs at the start; its mean over the box is kept",
        .range = {.low = -1e7, .high = 1e7},
        .effect = start},
-      {.path = "particles.step.factor",
+      {.path = "particles.density_step.factor",
        .type = number,
        .example = "2.0",
        .unit = "1",

@@ -39,5 +39,5 @@ mv "$work/kept.h5" "$work/blocked/collisions_000000.h5"
 runs 0 resume "$work/blocked" --until 1
 same "a folder in the way" "$work/blocked"
 
-refuses "a share of nothing" "output.collisions.share" check "$work/scene.toml" --set output.collisions.share=0
+refuses "a share of nothing" "output.collisions.fraction" check "$work/scene.toml" --set output.collisions.fraction=0
 report

@@ -137,7 +137,7 @@ resting_contacts = "carried"
 radial = 1e-9
 END
 runs 0 run "$work/minimal.toml" -o "$work/minimal"
-runs 0 run "$work/full.toml" --set time.step=auto --set output.collisions.share=1.0 -o "$work/full"
+runs 0 run "$work/full.toml" --set time.step=auto --set output.collisions.fraction=1.0 -o "$work/full"
 /usr/bin/python3 "$(dirname "$0")/formats_page.py" "$source_dir" "$work/minimal" "$work/full" >"$work/out" ||
   fail "docs/formats.md: $(cat "$work/out")"
 

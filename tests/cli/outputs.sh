@@ -110,7 +110,7 @@ mkdir "$work/a folder"
 cp "$work/state-1.hdf" "$work/a folder/2024"
 runs 0 run "$work/scene.toml" --from "$work/a folder/2024" -o "$work/from" --set time.end=0.01 --json
 has particle_count 400
-grep -qF -- "keeler: box of the scene is ignored: --from $work/a folder/2024 replaces it" "$work/err" ||
+grep -qF -- "keeler: note: box of the scene is ignored: --from $work/a folder/2024 replaces it" "$work/err" ||
   fail "--from: $(cat "$work/err")"
 (cd "$work/a folder" && "$keeler" run ../scene.toml --from 2024 -o here --set time.end=0.01 >/dev/null 2>&1) ||
   fail "--from with a name that looks like a number"

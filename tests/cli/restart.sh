@@ -60,10 +60,10 @@ grep -qF "the edited text is now '$work/edited/scene_edited.toml'" "$work/err" |
 cmp "$work/edited/scene_edited.toml" "$work/longer.toml" || fail "an edited scene: its text is lost"
 cmp "$work/edited/scene.toml" "$work/written.toml" || fail "an edited scene: scene.toml is not that of the run"
 same "an edited scene" "$work/edited"
-sed -i 's/^elastic_below = .*/elastic_below = 0.05/' "$work/edited/scene.toml"
+sed -i 's/^elastic_below_speed = .*/elastic_below_speed = 0.05/' "$work/edited/scene.toml"
 runs 0 resume "$work/edited" --until 1.02
 grep -qF "\"keeler run $work/edited/scene_edited_2.toml --from $work/edited/snap_" "$work/err" || fail "edited physics: $(cat "$work/err")"
-grep -qF "(elastic_below = 0.05)" "$work/err" || fail "edited physics: $(cat "$work/err")"
+grep -qF "(elastic_below_speed = 0.05)" "$work/err" || fail "edited physics: $(cat "$work/err")"
 runs 0 resume "$work/edited" --until 1.04
 grep -q "was edited" "$work/err" && fail "a scene as it was written is called edited: $(cat "$work/err")"
 

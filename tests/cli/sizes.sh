@@ -73,7 +73,7 @@ cat >"$work/grid.toml" <<END
 scene = "scene.toml"
 seeds = [1, 2, 3]
 END
-for key in time.end particles.density collisions.elastic_below; do
+for key in time.end particles.density collisions.elastic_below_speed; do
   printf '[[axis]]\nkey = "%s"\nvalues = [%s]\n' "$key" "$(seq -s , 0.0001 0.0001 0.2)" >>"$work/grid.toml"
 done
 too_large "a grid" "the grid makes 2.4e10 runs" sweep "$work/grid.toml" -o "$work/none"

@@ -31,7 +31,7 @@ runs 0 check "$work/dense.toml"
 prints "check" "$notice"
 prints "check" "mid-plane filling at the start     0.55"
 runs 0 generate "$work/dense.toml" -o "$work/dense.hdf"
-one_line "generate" "$notice"
+grep -qF "keeler: note: $notice" "$work/err" || fail "generate: no notice: $(cat "$work/err")"
 runs 0 run "$work/dense.toml" -o "$work/run"
 grep -qF "$notice" "$work/err" || fail "run: no notice: $(cat "$work/err")"
 prints "split" "  start                            "
@@ -45,12 +45,13 @@ refuses "a mode that does not fit the box" "row 1 of particles.modes.outward has
 
 # Density patterns, and a fraction of a snapshot's particles.
 runs 0 generate "$work/scene.toml" --set 'particles.wake={contrast=0.5, wavelength=30, pitch=25}' -o "$work/wake.hdf"
-one_line "a wake" "the wake has a wavelength of 26.83 m and a pitch of 26.57 degrees (2 x 1 waves fit the box)"
-refuses "a step beyond the box" "particles.step.between is [-10, 50] (it must be two rising x within the box, from -30 to 30" \
-  generate "$work/scene.toml" --set 'particles.step={between=[-10,50], factor=2.0}' -o "$work/none.hdf"
+grep -qF "keeler: note: the wake has a wavelength of 26.83 m and a pitch of 26.57 degrees (2 x 1 waves fit the box)" "$work/err" ||
+  fail "a wake: $(cat "$work/err")"
+refuses "a step beyond the box" "particles.density_step.between is [-10, 50] (it must be two rising x within the box, from -30 to 30" \
+  generate "$work/scene.toml" --set 'particles.density_step={between=[-10,50], factor=2.0}' -o "$work/none.hdf"
 
 # Aggregates.
-aggregate() { echo "particles.aggregate=[{ count = $1, filling = $2, place = [10, 0, 0] }]"; }
+aggregate() { echo "particles.aggregate=[{ count = $1, filling_factor = $2, position = [10, 0, 0] }]"; }
 accepts "an aggregate" generate "$work/scene.toml" --set "$(aggregate 200 0.5)" -o "$work/pile.hdf"
 runs 0 analyze "$work/pile.hdf"
 prints "an aggregate overlaps nothing" "largest overlap                    0 of"
@@ -113,13 +114,13 @@ rests bounced --set particles.density=597 --set gravity.kick_every=1 --set time.
 
 printf '[planet]\norbital_frequency = 1.95e-4\n[start]\nfrom = "1.hdf"\n[time]\nstep = 1e-3\nend = 0.002\n' >"$work/share.toml"
 for share in 1.0 0.5; do
-  runs 0 generate "$work/share.toml" --set start.keep=$share -o "$work/kept-$share.hdf"
+  runs 0 generate "$work/share.toml" --set start.keep_fraction=$share -o "$work/kept-$share.hdf"
   sed -nE 's/ particles? in .*//p' "$work/out" >"$work/kept-$share"
 done
 same_bytes "a share of 1" /PartType1/ParticleIDs "$work/1.hdf" "$work/kept-1.0.hdf"
 [ $((2 * $(cat "$work/kept-0.5"))) -lt $(($(cat "$work/kept-1.0") * 6 / 5)) ] || fail "half: $(cat "$work/kept-0.5")"
 [ $((2 * $(cat "$work/kept-0.5"))) -gt $(($(cat "$work/kept-1.0") * 4 / 5)) ] || fail "half: $(cat "$work/kept-0.5")"
-refuses "no share" "start.keep is 0" generate "$work/share.toml" --set start.keep=0.0 -o "$work/none.hdf"
+refuses "no share" "start.keep_fraction is 0" generate "$work/share.toml" --set start.keep_fraction=0.0 -o "$work/none.hdf"
 
 # A stop while an initial state is made for more than ten seconds. The program handles signals once it catches TERM (bit 14).
 catches_signals() { ((0x$(sed -n 's/^SigCgt:[[:space:]]*//p' "/proc/$1/status" 2>/dev/null || echo 0) & 0x4000)); }

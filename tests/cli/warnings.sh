@@ -40,7 +40,7 @@ accepts "nor comes back" check "$ringlet" --set satellite.passage=-3 --set satel
 prints "nor comes back" "note: the satellite first passes at orbit 37.2, after the end of the run at orbit 30"
 accepts "one that comes back" check "$ringlet" --set satellite.passage=-3 --set satellite.every=40.2 --set time.end=40
 grep -q "first passes" "$work/out" && fail "one that comes back: $(cat "$work/out")"
-far=(run "$ringlet" --set particles.optical_depth=1e-3 --set satellite.passage=1.5 --set satellite.upright_after=100)
+far=(run "$ringlet" --set particles.optical_depth=1e-3 --set satellite.passage=1.5 --set satellite.downstream_time=100)
 runs 0 "${far[@]}" --set time.end=0.4 -o "$work/before"
 [ "$(grep -c "satellite's passage" "$work/err" "$work/out")" = "$work/err:0
 $work/out:0" ] || fail "before a passage: $(cat "$work/err" "$work/out")"

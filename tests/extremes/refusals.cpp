@@ -84,10 +84,10 @@ void squeeze() {
 std::vector<Row> refused_states() {
   constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
   return {refused({"a jammed row without any room, hit", "three spheres that close a box of three diameters"}, storm, 3,
-                  {"event storm", "particle", "collisions.elastic_below"}),
+                  {"event storm", "particle", "collisions.elastic_below_speed"}),
           refused({"a sphere between two 10⁹ times as heavy",
                    "three in a row along the orbit, closing at 10 m an orbit's radian, ε 0.5"},
-                  squeeze, 3, {"event storm", "particle 1", "collisions.elastic_below"}),
+                  squeeze, 3, {"event storm", "particle 1", "collisions.elastic_below_speed"}),
           refused({"an overlap at the start", "two spheres, 1e-7 of two radii too near"},
                   [] {
                     start_from({{{0, 0, 0}}, {{0, 0, 2.0 - 2e-7}}}, 50.0);

@@ -28,7 +28,7 @@ checkpoint_every = 0.02
 EQUAL = ["particles.sizes={law='equal',radius=1.0}"]
 TREE = EQUAL + ["gravity.solver=tree"]
 FFT = EQUAL + ["gravity.solver=fft"]
-CONTACTS = ["output.collisions.share=0.5"]
+CONTACTS = ["output.collisions.fraction=0.5"]
 FRICTION = ["collisions.friction.tangential_restitution=0.4", "collisions.friction.coefficient=0.5"]
 MOONLET = ["moonlet=[{radius=3.0,density=900.0}]"]
 

@@ -19,7 +19,7 @@ Scene scene_of(double hill_parameter) { // r_h = 0.82 (ρ/900)^(1/3) (a/10⁸), 
                                  "gravity.solver = \"direct\"\ntime = {{ step = 2e-3, end = 1.0 }}\n"
                                  "[particles]\ncount = 100\ndensity = {}\n"
                                  "sizes = {{ law = \"equal\", radius = 1.0 }}\n"
-                                 "[[particles.aggregate]]\ncount = 100\nplace = [8, -5, 0]\nfilling = 0.5\n",
+                                 "[[particles.aggregate]]\ncount = 100\nposition = [8, -5, 0]\nfilling_factor = 0.5\n",
                                  density),
                      "test scene");
 }

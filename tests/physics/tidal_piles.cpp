@@ -25,7 +25,7 @@ Scene scene_of(double hill_parameter) { // r_h = 0.82 (ρ/900)^(1/3) (a/10⁸), 
                   "gravity = {{ solver = \"direct\", kick_every = 2, resting_contacts = \"carried\" }}\n"
                   "collisions.restitution = {{ law = \"constant\", value = 0.5 }}\n"
                   "[particles]\ncount = {}\ndensity = {}\nseed = 1\nsizes = {{ law = \"equal\", radius = 1.0 }}\n"
-                  "[[particles.aggregate]]\ncount = {}\nplace = [0, 0, 0]\nfilling = 0.5\n",
+                  "[[particles.aggregate]]\ncount = {}\nposition = [0, 0, 0]\nfilling_factor = 0.5\n",
                   count, density, count),
       "test scene");
 }

@@ -35,6 +35,12 @@ class Scenes(unittest.TestCase):
         self.assertEqual(by_table.state_hash, by_key.state_hash)
         self.assertNotEqual(by_table.state_hash, keeler.Simulation(RING).state_hash)
 
+    def test_a_former_name_of_a_key_is_read_with_a_remark(self):
+        now = keeler.Simulation(RING, collisions={"elastic_below_speed": 0.02})
+        before = keeler.Simulation(RING, collisions={"elastic_below": 0.02})
+        self.assertEqual((now.state_hash, now.scene), (before.state_hash, before.scene))
+        self.assertIn("'collisions.elastic_below' is now called 'collisions.elastic_below_speed'", before.remarks[0])
+
     def test_contacts_at_rest_are_chosen_by_the_particles_wherever_they_come_from(self):
         for r_h, word in ((0.65, "bounced"), (0.93, "carried")):
             dense = ring(

@@ -99,9 +99,11 @@ TEST_CASE("a fresh start has the bits of one process, and each rank has its part
 TEST_CASE("moonlets and aggregates have the bits of one process, at bounds of slabs and inside") {
   const std::string friction = "[collisions.friction]\ntangential_restitution = 0.5\n";
   for (const char* const position : {"0.0, 3.0, 0.0", "-44.0, 20.0, 1.0", "15.0, -10.0, 0.0"}) {
-    const std::string moonlet = std::string("[[moonlet]]\nplace = [") + position + "]\nradius = 7.0\ndensity = 700.0\n",
-                      aggregates = "[[particles.aggregate]]\ncount = 80\nplace = [-20.0, -15.0, 0.0]\nspin = 0.5\n"
-                                   "[[particles.aggregate]]\ncount = 30\nplace = [30.0, 12.0, 0.0]\nfilling = 0.35\n";
+    const std::string moonlet =
+                          std::string("[[moonlet]]\nposition = [") + position + "]\nradius = 7.0\ndensity = 700.0\n",
+                      aggregates =
+                          "[[particles.aggregate]]\ncount = 80\nposition = [-20.0, -15.0, 0.0]\nspin = 0.5\n"
+                          "[[particles.aggregate]]\ncount = 30\nposition = [30.0, 12.0, 0.0]\nfilling_factor = 0.35\n";
     const Scene scene = scene_with("[90, 60]", "optical_depth = 0.4\n" + equal, aggregates + moonlet + friction);
     CHECK(differences(initial_patch(scene), initial_patch(scene, {}, launched())) == 0);
   }
@@ -147,7 +149,7 @@ TEST_CASE("small spheres caught between large ones are moved to the positions of
 
 TEST_CASE("a start without room ends on all ranks in the words of one process") {
   const Scene scene = scene_with("[40, 40]", "optical_depth = 0.9\nvelocity_dispersion = 4.0\n" + equal,
-                                 "[[particles.aggregate]]\ncount = 120\nfilling = 0.63\n");
+                                 "[[particles.aggregate]]\ncount = 120\nfilling_factor = 0.63\n");
   const std::string expected = words_of(scene, {});
   CHECK(expected.find("lower its filling") != std::string::npos);
   CHECK(words_of(scene, launched()) == expected);

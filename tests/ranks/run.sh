@@ -84,7 +84,7 @@ sizes = { law = "equal", radius = 1.0 }
 [[moonlet]]
 radius = 6.0
 density = 700.0
-place = [59, -9, 0]
+position = [59, -9, 0]
 velocity = [0.004, 0, 0]
 [gravity]
 solver = "fft"
@@ -164,7 +164,7 @@ cat >"$work/from.toml" <<END
 preset = "saturn-a-ring"
 [start]
 from = "$(last_of "$work/many-1")"
-keep = 0.9
+keep_fraction = 0.9
 [time]
 step = 2e-3
 end = 4e-3

@@ -146,7 +146,7 @@ TEST_CASE("a run from a snapshot has the bits of one process, for any distributi
   const SharedSnapshot file(initial_patch(a_scene()));
   for (const char* keep : {"1.0", "0.6"})
     for (const bool rough : {false, true}) {
-      std::vector<std::string> overrides{std::string("start.keep=") + keep};
+      std::vector<std::string> overrides{std::string("start.keep_fraction=") + keep};
       if (rough)
         overrides.emplace_back("collisions.friction.tangential_restitution=0.5");
       std::string text = "[planet]\npreset = \"saturn-a-ring\"\n[start]\nfrom = \"" + file.path() +

@@ -67,7 +67,7 @@ std::vector<Row> negative_diffusion() {
                     passed({"particles.sizes={ law = \"equal\", radius = 1e-3 }", "particles.count=2546",
                             "particles.velocity_dispersion=1000"}),
                     1.0, 0.05, "the cell's own error of second order, 1 % a passage", "an eccentricity moves no orbit"),
-          width_row("no bunching", passed({"satellite.upright_after=0"}), 1.1, 0.1, "that it spreads",
+          width_row("no bunching", passed({"satellite.downstream_time=0"}), 1.1, 0.1, "that it spreads",
                     "viscosity, where all streamlines swing alike")};
 }
 

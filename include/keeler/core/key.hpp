@@ -58,7 +58,8 @@ struct Key {
   KeyCondition only_with{};                ///< when the key applies
   std::vector<std::string> columns{};      ///< of rows: meaning and unit of each column
   KeyEffect effect = KeyEffect::motion;    ///< what the key affects
-  std::string unhashed{}; ///< TOML; this value is not hashed: scenes older than the key keep their state hash
+  std::string former_name{}; ///< an earlier name(), which documents may still use; the state hash keeps it
+  std::string unhashed{};    ///< TOML; this value is not hashed: scenes older than the key keep their state hash
 
   /// Returns the path without its last part: "particles.sizes"; empty if it has one part.
   std::string section() const { return path.substr(0, path.rfind('.') == std::string::npos ? 0 : path.rfind('.')); }

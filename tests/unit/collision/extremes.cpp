@@ -327,7 +327,7 @@ TEST_CASE("a storm of contacts ends with a message, not in a hang") {
     const std::string text = error.what();
     CHECK(text.find("particle") != std::string::npos);
     CHECK(text.find("event storm") != std::string::npos);
-    CHECK(text.find("collisions.elastic_below") != std::string::npos);
+    CHECK(text.find("collisions.elastic_below_speed") != std::string::npos);
   }
 }
 

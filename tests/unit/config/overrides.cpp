@@ -24,6 +24,20 @@ TEST_CASE("an override replaces a value, an alternative and the keys of another 
   CHECK(notices[0].find("time.end") == 0);
 }
 
+TEST_CASE("an override may use a former name, of a table as well") {
+  TomlDocument document = parse_document("time.steps = 3\n", "f.toml", schema());
+  std::vector<std::string> notices;
+  apply_overrides(document, {"time.kicks=1e2", "moonlet=[{ size = 2 }]", "begin.keep=.5"}, notices);
+  CHECK(notices.empty());
+  CHECK(std::get<std::int64_t>(document.find("time.steps")->value) == 100);
+  CHECK(document.find("moonlet[1].radius"));
+  CHECK(std::get<double>(document.find("start.keep")->value) == 0.5);
+  CHECK(former_name_notices(document) ==
+        std::vector<std::string>{"--set time.kicks=1e2: 'time.kicks' is now called 'time.steps'",
+                                 "--set moonlet=[{ size = 2 }]: 'moonlet.size' is now called 'moonlet.radius'",
+                                 "--set begin.keep=.5: 'begin.keep' is now called 'start.keep'"});
+}
+
 TEST_CASE("a text is taken verbatim, and is overridden") {
   TomlDocument document(schema());
   std::vector<std::string> notices;

@@ -21,11 +21,18 @@ inline const config::Schema& schema() {
         .type = KeyType::number,
         .example = "1.0",
         .range = {.low = 0.0},
-        .effect = KeyEffect::start},
+        .effect = KeyEffect::start,
+        .former_name = "size"},
+       {.path = "start.keep", .type = KeyType::number, .example = "0.5", .effect = KeyEffect::start},
        {.path = "time.end", .type = KeyType::number, .example = "3.0", .alternatives = {"time.steps"}},
-       {.path = "time.steps", .type = KeyType::integer, .example = "3", .alternatives = {"time.end"}}},
+       {.path = "time.steps",
+        .type = KeyType::integer,
+        .example = "3",
+        .alternatives = {"time.end"},
+        .former_name = "kicks"}},
       {{.path = "gravity"},
        {.path = "moonlet", .repeated = true, .max_count = 3},
+       {.path = "start", .former_path = "begin"},
        {.path = "time", .needed = true, .meaning = "it ends"}});
   return all;
 }

@@ -48,7 +48,30 @@ TEST_CASE("defaults are in force where their table and condition are, and the re
   CHECK(settings.given("time.steps"));
   CHECK(settings.resolved() == "title = \"\"\n\n[gravity]\nsolver = \"tree\"\nopening_angle = 0.6\n\n[[moonlet]]\n"
                                "radius = 2.0\n\n[time]\nsteps = 7\n");
-  CHECK(settings.motion() == "gravity.solver = \"tree\"\ngravity.opening_angle = 0.6\ntime.steps = 7\n");
+  CHECK(settings.motion() == "gravity.solver = \"tree\"\ngravity.opening_angle = 0.6\ntime.kicks = 7\n");
+}
+
+TEST_CASE("former names of keys and tables are read as the present ones, and named once each") {
+  const TomlDocument document = parse_document(
+      "time.kicks = 7e0\n[[moonlet]]\nsize = 2\n[[moonlet]]\nsize = 3\n[begin]\nkeep = 1\n", "f.toml", schema());
+  CHECK(std::get<std::int64_t>(document.find("time.steps")->value) == 7);
+  CHECK(std::get<std::int64_t>(document.find("moonlet[2].radius")->value) == 3);
+  CHECK(std::get<std::int64_t>(document.find("start.keep")->value) == 1);
+  CHECK(former_name_notices(document) ==
+        std::vector<std::string>{"f.toml:1:6: 'time.kicks' is now called 'time.steps'",
+                                 "f.toml:3:1: 'moonlet.size' is now called 'moonlet.radius'",
+                                 "f.toml:6:2: 'begin' is now called 'start'"});
+  CHECK(schema().find_key("moonlet[1].size") == schema().find_key("moonlet.radius"));
+  CHECK(schema().find_key("begin.keep") == schema().find_key("start.keep"));
+  CHECK(former_name_notices(parse_document("time.steps = 7\nstart = { keep = 1 }\n", "f.toml", schema())).empty());
+}
+
+TEST_CASE("a former name and the present one in one text are refused, whichever is first") {
+  const std::string words = "time.kicks cannot be combined with time.steps (its present name); remove one of the two";
+  CHECK(refusal("time.kicks = 7\ntime.steps = 7\n") == "f.toml:2:6: " + words);
+  CHECK(refusal("time.steps = 7\ntime.kicks = 7\n") == "f.toml:2:6: " + words);
+  CHECK(refusal("time.end = 7\n[begin]\nkeep = 1\n[start]\nkeep = 1\n") ==
+        "f.toml:4:2: begin cannot be combined with start (its present name); remove one of the two");
 }
 
 } // namespace config_settings_test

@@ -21,8 +21,9 @@ const std::string equal = "sizes = { law = \"equal\", radius = 1.0 }\n",
                   wide = "sizes = { law = \"power\", exponent = 3.0, min = 0.3, max = 3.0 }\n",
                   mixed = "sizes = { law = \"populations\", populations = [[1.5, 300, 900.0], [0.6, 900, 450.0]] }\n";
 
-const std::string two = "[[particles.aggregate]]\ncount = 200\nplace = [33, -10, 2]\nfilling = 0.5\n"
-                        "[[particles.aggregate]]\ncount = 60\nplace = [-15, 20, 0]\nfilling = 0.35\nspin = -1.5\n";
+const std::string two =
+    "[[particles.aggregate]]\ncount = 200\nposition = [33, -10, 2]\nfilling_factor = 0.5\n"
+    "[[particles.aggregate]]\ncount = 60\nposition = [-15, 20, 0]\nfilling_factor = 0.35\nspin = -1.5\n";
 
 Scene scene_with(const std::string& sizes, const std::string& more, const std::vector<std::string>& overrides = {}) {
   const std::string density = sizes == mixed ? "" : "density = 900.0\n";
@@ -126,8 +127,9 @@ TEST_CASE("rough particles of an aggregate spin as it does") {
 }
 
 TEST_CASE("aggregates stand beside moonlets, patterns and streamlines, or alone") {
-  const std::string moonlet = "[[moonlet]]\nradius = 6.0\ndensity = 450.0\nplace = [0, -30, 0]\n";
-  const Scene beside = scene_with(equal, two + moonlet, {"particles.step={ between = [-20, 10], factor = 3.0 }"});
+  const std::string moonlet = "[[moonlet]]\nradius = 6.0\ndensity = 450.0\nposition = [0, -30, 0]\n";
+  const Scene beside =
+      scene_with(equal, two + moonlet, {"particles.density_step={ between = [-20, 10], factor = 3.0 }"});
   const Patch patch = initial_patch(beside);
   CHECK(patch.size() == beside.particles.count + 1);
   CHECK(patch.radii.back() == 6.0);
@@ -143,7 +145,7 @@ TEST_CASE("aggregates stand beside moonlets, patterns and streamlines, or alone"
 }
 
 TEST_CASE("a filling that cannot be reached is refused in one line") {
-  const Scene scene = scene_with(equal, "[[particles.aggregate]]\ncount = 20\nfilling = 0.6\n");
+  const Scene scene = scene_with(equal, "[[particles.aggregate]]\ncount = 20\nfilling_factor = 0.6\n");
   CHECK_THROWS_WITH_AS(initial_patch(scene),
                        "particles.aggregate[1]: 20 particles cannot be packed at random to a filling of 0.6 (fewer "
                        "particles reach only a lower filling); lower its filling",

@@ -86,7 +86,7 @@ TEST_CASE("a pattern has the mean 1, and nowhere more than its peak") {
 }
 
 TEST_CASE("a step has the density that is asked for on both sides, and the scene's number of particles") {
-  const Scene scene = scene_with("step = { between = [-30.0, 50.0], factor = 3.0 }");
+  const Scene scene = scene_with("density_step = { between = [-30.0, 50.0], factor = 3.0 }");
   const Patch patch = initial_patch(scene);
   CHECK(patch.size() == scene_with("").particles.count);
   CHECK(cells::largest_overlap(patch).depth == 0.0);
@@ -95,7 +95,7 @@ TEST_CASE("a step has the density that is asked for on both sides, and the scene
   CHECK(density_between(patch, -29.0, 49.0) == doctest::Approx(3.0 * beside).epsilon(3.0 / std::sqrt(2900.0)));
   CHECK(density_between(patch, -119.0, -31.0) == doctest::Approx(beside).epsilon(3.0 / std::sqrt(1000.0)));
   CHECK(density_between(patch, 51.0, 119.0) == doctest::Approx(beside).epsilon(3.0 / std::sqrt(800.0)));
-  const Patch gap = initial_patch(scene_with("step = { between = [10.0, 40.0], factor = 0.0 }"));
+  const Patch gap = initial_patch(scene_with("density_step = { between = [10.0, 40.0], factor = 0.0 }"));
   CHECK(density_between(gap, 12.0, 38.0) == 0.0);
   CHECK(density_between(gap, -119.0, 8.0) == doctest::Approx(240.0 / 210.0).epsilon(3.0 / std::sqrt(2800.0)));
 }
@@ -131,12 +131,14 @@ TEST_CASE("a wake has the amplitude and the place that are asked for, and trails
 }
 
 TEST_CASE("a pattern that the box does not hold is told") {
-  CHECK(fault("step = { between = [-30.0, 130.0], factor = 2.0 }")
-            .find("particles.step.between is [-30, 130] (it must be two rising x within the box, from -120 to 120, and "
+  CHECK(fault("density_step = { between = [-30.0, 130.0], factor = 2.0 }")
+            .find("particles.density_step.between is [-30, 130] (it must be two rising x within the box, from -120 to "
+                  "120, and "
                   "not all of it)") != std::string::npos);
-  CHECK(fault("step = { between = [30.0, -30.0], factor = 2.0 }").find("two rising x") != std::string::npos);
-  CHECK(fault("step = { between = [-120.0, 120.0], factor = 2.0 }").find("not all of it") != std::string::npos);
-  CHECK(fault("step = { between = [-30.0, 30.0] }").find("particles.step.factor is missing") != std::string::npos);
+  CHECK(fault("density_step = { between = [30.0, -30.0], factor = 2.0 }").find("two rising x") != std::string::npos);
+  CHECK(fault("density_step = { between = [-120.0, 120.0], factor = 2.0 }").find("not all of it") != std::string::npos);
+  CHECK(fault("density_step = { between = [-30.0, 30.0] }").find("particles.density_step.factor is missing") !=
+        std::string::npos);
   CHECK(fault("wake = { contrast = 0.5, wavelength = 1000.0 }").find("no wave fits the box of 240 m x 160 m") !=
         std::string::npos);
   CHECK(fault("wake = { contrast = 0.5, wavelength = 1.5 }").find("shorter than the largest particle (2 m across)") !=

@@ -13,8 +13,8 @@ using namespace keeler;
 namespace {
 
 const std::string moonlets =
-    "[[moonlet]]\nradius = 12.0\ndensity = 450.0\nplace = [31, -10, 2]\n"
-    "[[moonlet]]\nradius = 0.2\nmass = 20.0\nplace = [-32, 5, 0]\nvelocity = [1e-3, 0, 2e-3]\n";
+    "[[moonlet]]\nradius = 12.0\ndensity = 450.0\nposition = [31, -10, 2]\n"
+    "[[moonlet]]\nradius = 0.2\nmass = 20.0\nposition = [-32, 5, 0]\nvelocity = [1e-3, 0, 2e-3]\n";
 
 Scene scene_with(const std::string& more, const std::string& sizes) {
   return parse_scene("planet.preset = \"saturn-a-ring\"\nbox.size = [70, 90]\ntime.end = 1.0\n"
@@ -54,8 +54,8 @@ TEST_CASE("moonlets stand where the scene says, with the last ids, and nothing o
 }
 
 TEST_CASE("moonlets that touch keep their places, and grains keep clear of them") {
-  const Scene scene = scene_with("[[moonlet]]\nradius = 6.0\ndensity = 450.0\nplace = [-6, 0, 0]\n"
-                                 "[[moonlet]]\nradius = 6.0\ndensity = 450.0\nplace = [6, 0, 0]\n",
+  const Scene scene = scene_with("[[moonlet]]\nradius = 6.0\ndensity = 450.0\nposition = [-6, 0, 0]\n"
+                                 "[[moonlet]]\nradius = 6.0\ndensity = 450.0\nposition = [6, 0, 0]\n",
                                  "sizes = { law = \"equal\", radius = 0.5 }\n");
   CHECK(cells::largest_overlap(initial_patch(scene)).depth == 0.0);
 }

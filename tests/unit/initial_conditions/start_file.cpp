@@ -81,14 +81,14 @@ TEST_CASE("a start file's particles must be possible; the first that is not is n
   CHECK(fault([](Patch& p) { p.box.size_y = 6e4; }).find("more than 1000 times as long as wide") != std::string::npos);
 }
 
-TEST_CASE("rough particles that start.keep keeps have their spins") {
+TEST_CASE("rough particles that start.keep_fraction keeps have their spins") {
   const std::string file = (std::filesystem::temp_directory_path() / "keeler-test-kept-spins.hdf").string();
   const std::string rough = "collisions.friction.tangential_restitution=0.5";
   Patch patch = initial_patch(scene({rough}));
   for (std::size_t k = 0; k < patch.size(); ++k)
     patch.spins.emplace_back(0.1 * static_cast<double>(k), 1.0, -0.2 * static_cast<double>(k));
   io::write_snapshot(file, patch, {scene().resolved, {}});
-  const Patch kept = initial_patch(scene({rough, "start.keep=0.4"}, file));
+  const Patch kept = initial_patch(scene({rough, "start.keep_fraction=0.4"}, file));
   std::filesystem::remove(file);
   REQUIRE(kept.size() > 5);
   REQUIRE(kept.size() < 25);
@@ -139,7 +139,7 @@ TEST_CASE("a restitution without an equilibrium is doubted, in a scene and of a 
   CHECK(said({fmt::format(fmt::runtime(constant), 0.71)}) == 0);
   CHECK(said({fmt::format(fmt::runtime(constant), 0.72)}) == 1);
   CHECK(said({fmt::format(fmt::runtime(constant), 1)}) == 1);
-  CHECK(said({fmt::format(fmt::runtime(constant), 1), "collisions.restitution.largest=0.7"}) == 0);
+  CHECK(said({fmt::format(fmt::runtime(constant), 1), "collisions.restitution.max_coefficient=0.7"}) == 0);
   CHECK(said({fmt::format(fmt::runtime(constant), 1), "collisions.friction.tangential_restitution=0.5"}) == 0);
   CHECK(said({"collisions.restitution={ law = \"table\", table = [[1e-3, 0.2], [1e-2, 0.8]] }"}) == 1);
   CHECK(said({}) == 0); // frosty ice loses more, the faster it collides
@@ -225,7 +225,7 @@ TEST_CASE("a share of a start file's particles is kept, the same ones of any sta
   const Patch patch = initial_patch(whole);
   io::write_snapshot(file, patch, {whole.resolved, {}});
   const auto kept = [&](const std::string& share, const std::string& seed) {
-    return initial_patch(scene({"start.keep=" + share, "start.keep_seed=" + seed}, file));
+    return initial_patch(scene({"start.keep_fraction=" + share, "start.keep_seed=" + seed}, file));
   };
   CHECK(initial_patch(scene({}, file)).ids == patch.ids);
   CHECK(kept("1.0", "1").positions == patch.positions);
@@ -238,11 +238,11 @@ TEST_CASE("a share of a start file's particles is kept, the same ones of any sta
     CHECK(third.positions[k] == patch.positions[id]);
     CHECK(third.masses[k] == patch.masses[id]);
   }
-  CHECK_THROWS_WITH_AS(
-      kept("1e-9", "1"),
-      ("start.keep = 1e-9 keeps none of the 3000 particles of '" + file + "'; raise it, or try another start.keep_seed")
-          .c_str(),
-      UsageError);
+  CHECK_THROWS_WITH_AS(kept("1e-9", "1"),
+                       ("start.keep_fraction = 1e-9 keeps none of the 3000 particles of '" + file +
+                        "'; raise it, or try another start.keep_seed")
+                           .c_str(),
+                       UsageError);
   std::filesystem::remove(file);
 }
 

@@ -26,7 +26,7 @@ struct Onlooker final : collision::DriftObserver {
   void collided(const collision::CollisionRecord& record) override { records.push_back(record); }
 };
 
-const std::vector<std::string> logged = {"time.end=0.4", "output.collisions.share=1.0", "output.snapshot_every=0.1",
+const std::vector<std::string> logged = {"time.end=0.4", "output.collisions.fraction=1.0", "output.snapshot_every=0.1",
                                          "output.checkpoint_every=0.04"};
 
 std::vector<std::string> logged_with(const std::vector<std::string>& more) {
@@ -71,7 +71,7 @@ std::vector<io::ContactRow> table_in(const RunFolder& folder, std::int64_t file_
 
 TEST_CASE("the log holds what an observer sees, in SI") {
   const TemporaryFolder work;
-  const Scene scene = small_scene({"output.collisions.share=1.0"});
+  const Scene scene = small_scene({"output.collisions.fraction=1.0"});
   const double omega = scene.planet.orbital_frequency, h = scene.time.step;
   const RunFolder folder(work.path());
   Simulation one(scene, initial_patch(scene)), other(scene, initial_patch(scene));
@@ -171,7 +171,7 @@ TEST_CASE("the log of a run does not depend on threads, and the run not on the l
   set_threads(before);
   CHECK(rows_in(work / "1").size() > 40);
 
-  run(work / "share", logged_with({"output.collisions.share=0.5"}));
+  run(work / "share", logged_with({"output.collisions.fraction=0.5"}));
   run(work / "fast", logged_with({"output.collisions.min_speed=1e-4"}));
   std::size_t fast = 0;
   for (const io::ContactRow& row : rows_in(work / "1"))
@@ -201,7 +201,7 @@ TEST_CASE("a run that goes on from a checkpoint has the log of a run without a b
 
 TEST_CASE("files of a log are cut back to the rows of a checkpoint, wherever that falls") {
   const TemporaryFolder work;
-  const Scene scene = small_scene({"output.collisions.share=1.0"});
+  const Scene scene = small_scene({"output.collisions.fraction=1.0"});
   const auto evolve = [&](ContactLog& log, Simulation& simulation, int until) {
     log.watch(simulation);
     while (simulation.state().step < until) {

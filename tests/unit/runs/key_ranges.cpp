@@ -33,7 +33,7 @@ using Tables = std::map<std::string, std::map<std::string, std::string>>;
 const std::map<std::string, std::string> fitting = {
     {"moonlet.radius", "2.0"},
     {"moonlet.mass", "3e4"},
-    {"moonlet.place", "[5.0, 5.0, 0.0]"},
+    {"moonlet.position", "[5.0, 5.0, 0.0]"},
     {"particles.aggregate.count", "8"},
     {"particles.count", "60"},
     {"particles.sizes.path", "[[1.0]]"},

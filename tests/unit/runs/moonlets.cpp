@@ -31,8 +31,8 @@ std::map<std::string, double> row_of(const Scene& scene, const Simulation& simul
 }
 
 // One moonlet at x near the edge, so that it wraps, and one in the middle.
-const std::string two = "moonlet=[{ radius = 1.5, density = 900.0, place = [14.8, 0.0, 0.0] }, "
-                        "{ radius = 2.0, density = 500.0, place = [-3.0, 4.0, 0.0], velocity = [1e-4, 0.0, 2e-4] }]";
+const std::string two = "moonlet=[{ radius = 1.5, density = 900.0, position = [14.8, 0.0, 0.0] }, "
+                        "{ radius = 2.0, density = 500.0, position = [-3.0, 4.0, 0.0], velocity = [1e-4, 0.0, 2e-4] }]";
 
 } // namespace
 
@@ -71,8 +71,8 @@ TEST_CASE("the momentum that collisions give a moonlet is what they take from th
   const Scene scene = parse_scene("planet.orbital_frequency = 2e-4\nbox.size = [200.0, 60.0]\ntime.end = 1.0\n"
                                   "particles = { count = 1, density = 900.0, sizes = { law = \"equal\", radius = 0.01 "
                                   "}, seed = 7 }\n"
-                                  "[[moonlet]]\nradius = 5.0\ndensity = 900.0\nplace = [20, -9, 0]\n"
-                                  "[[moonlet]]\nradius = 4.0\ndensity = 300.0\nplace = [23, 9, 0]\n",
+                                  "[[moonlet]]\nradius = 5.0\ndensity = 900.0\nposition = [20, -9, 0]\n"
+                                  "[[moonlet]]\nradius = 4.0\ndensity = 300.0\nposition = [23, 9, 0]\n",
                                   "test scene");
   Simulation simulation(scene, initial_patch(scene));
   while (simulation.orbits() < 0.5)

@@ -168,7 +168,7 @@ particles.start = { law = "lattice", eccentricity = 2.0 }
 time.end = 1.0
 )";
   const Scene scene =
-      parse_scene(text + "[[moonlet]]\nradius = 4.0\ndensity = 900.0\nplace = [0.0, 0.0, 20.0]\n", "test scene");
+      parse_scene(text + "[[moonlet]]\nradius = 4.0\ndensity = 900.0\nposition = [0.0, 0.0, 20.0]\n", "test scene");
   const Patch patch = initial_patch(scene);
   REQUIRE(patch.size() == 31);
   CHECK(patch.radii[30] == 4.0);

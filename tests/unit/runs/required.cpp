@@ -147,7 +147,7 @@ TEST_CASE("what a recorder holds grows with the particles where it logs contacts
     CHECK(growth({gravity, "output.stress_every=0.1"}) < 1000.0);
     CHECK(growth({gravity, "output.stress_every=0.1", "output.series_every=0.01"}) < 1000.0);
   }
-  CHECK(growth({"output.collisions.share=1"}) > many);
+  CHECK(growth({"output.collisions.fraction=1"}) > many);
 }
 
 TEST_CASE("a run of a scene that asks for nothing more spends no time on it and writes no file for it") {

@@ -78,9 +78,9 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
       {"particles.sizes.min", {"0.4", start}},
       {"particles.sizes.max", {"1.5", start}},
       {"collisions.finder", {"linear-full", motion}},
-      {"collisions.elastic_below", {"2e-2", motion}},
+      {"collisions.elastic_below_speed", {"2e-2", motion}},
       {"collisions.restitution.scale", {"0.32", motion}},
-      {"collisions.restitution.largest", {"0.9", motion}},
+      {"collisions.restitution.max_coefficient", {"0.9", motion}},
       {"collisions.friction.tangential_restitution", {"0.5", motion}},
       {"collisions.friction.coefficient", {"0.2", motion}},
       {"gravity.solver", {"direct", motion}},
@@ -101,7 +101,7 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
       {"output.stress_every", {"0.2", output}},
       {"output.collisions.min_speed", {"1e-4", output}},
       {"output.collisions.min_radius_sum", {"1.0", output}},
-      {"output.collisions.share", {"0.5", output}},
+      {"output.collisions.fraction", {"0.5", output}},
   };
   const std::set<std::string> needless = {"quality", // it says other keys
                                           "planet.preset",
@@ -118,13 +118,13 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
                                           "collisions.restitution.table",
                                           "collisions.restitution.critical_speed",
                                           "collisions.restitution.name",
-                                          "collisions.restitution.speed",
-                                          "collisions.restitution.radius",
+                                          "collisions.restitution.reference_speed",
+                                          "collisions.restitution.reference_radius",
                                           "gravity.force_error",
                                           "gravity.mesh_spacing",
                                           "gravity.shortest_wavelength",
                                           "start.from",
-                                          "start.keep",
+                                          "start.keep_fraction",
                                           "start.keep_seed"};
   const Scene scene = small_scene();
   const simulation::SimulationState state = evolved(scene, 2);
@@ -134,7 +134,7 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
     const auto other = others.find(key.path);
     if (other == others.end()) { // cannot be combined with the other keys of this scene
       CHECK((needless.count(key.path) == 1 || key.section() == "particles.streamlines" ||
-             key.section() == "particles.modes" || key.section() == "particles.step" ||
+             key.section() == "particles.modes" || key.section() == "particles.density_step" ||
              key.section() == "particles.wake" || key.section() == "particles.aggregate" ||
              key.section() == "moonlet" || key.section() == "satellite"));
       CHECK((key.effect == motion || key.section() != "satellite"));
@@ -200,11 +200,11 @@ TEST_CASE("the field table holds all that a run needs to go on to the bit") {
     scene = small_scene({"collisions.friction.tangential_restitution=0.5"});
   }
   SUBCASE("moonlets, an external force and a sparse kick") {
-    scene = small_scene({"moonlet=[{ radius = 1.5, density = 900.0, place = [14.8, 0.0, 0.0] }]",
+    scene = small_scene({"moonlet=[{ radius = 1.5, density = 900.0, position = [14.8, 0.0, 0.0] }]",
                          "constant_acceleration.azimuthal=1e-9", "gravity.kick_every=5"});
   }
   SUBCASE("an automatic step, from wakes that have changed it") {
-    scene = small_scene({"time.step=\"auto\"", "collisions.elastic_below=0.3", "output.series_every=0.0625"});
+    scene = small_scene({"time.step=\"auto\"", "collisions.elastic_below_speed=0.3", "output.series_every=0.0625"});
   }
   const std::int64_t half_way = scene.time.automatic ? 700 : 10; // steps
   const auto steps = [](Simulation& simulation, std::int64_t count) {

@@ -14,9 +14,9 @@ using namespace keeler::test;
 
 namespace {
 
-const std::string two = "[[particles.aggregate]]\ncount = 64\nplace = [-20, 5, 1]\n"                // 11
-                        "[[particles.aggregate]]\ncount = 100\nfilling = 0.4\nplace = [30, 0, 0]\n" // 14
-                        "spin = 0.25\n";                                                            // 18
+const std::string two = "[[particles.aggregate]]\ncount = 64\nposition = [-20, 5, 1]\n"                       // 11
+                        "[[particles.aggregate]]\ncount = 100\nfilling_factor = 0.4\nposition = [30, 0, 0]\n" // 14
+                        "spin = 0.25\n";                                                                      // 18
 
 std::string with_two(const std::string& part, const std::string& by) {
   return fault(least + changed(two, part, by));
@@ -45,8 +45,9 @@ TEST_CASE("aggregates take the last particles of the scene and change no total")
   CHECK(scene.bunched_optical_depth() == doctest::Approx(without.optical_depth() * 136.0 / 300.0).epsilon(1e-14));
   CHECK(scene.motion == without.motion); // the state holds them
   CHECK(parse_scene(scene.resolved, "r.toml").resolved == scene.resolved);
-  CHECK(scene.resolved.find("\n[[particles.aggregate]]\ncount = 64\nfilling = 0.5\nplace = [-20.0, 5.0, 1.0]\nspin = "
-                            "1.0\n") != std::string::npos);
+  CHECK(scene.resolved.find(
+            "\n[[particles.aggregate]]\ncount = 64\nfilling_factor = 0.5\nposition = [-20.0, 5.0, 1.0]\nspin = "
+            "1.0\n") != std::string::npos);
   CHECK_NOTHROW(parse_stored_scene(scene.resolved, "r.toml"));
 }
 
@@ -54,7 +55,7 @@ TEST_CASE("particles in aggregates do not count for the filling of the layer") {
   const std::string dense = changed(least, "count = 300", "count = 3000"); // an optical depth of 1.9
   const auto crowd = [&](int count) {
     return changed(changed(dense, "count = 3000", "optical_depth = 5.0"), "radius = 1.0", "radius = 0.5") +
-           "[[particles.aggregate]]\nfilling = 0.5\ncount = " + std::to_string(count) + "\n";
+           "[[particles.aggregate]]\nfilling_factor = 0.5\ncount = " + std::to_string(count) + "\n";
   };
   CHECK(fault(crowd(10)).find("too dense") != std::string::npos);
   CHECK(fault(crowd(20000)).empty());
@@ -67,23 +68,23 @@ TEST_CASE("faults of an aggregate are reported with its number and line") {
   CHECK(with_two("count = 64", "count = 301").find("s.toml:12:9: particles.aggregate[1].count = 301 is too large") ==
         0);
   CHECK(with_two("count = 64\n", "").find("s.toml:11:1: particles.aggregate[1].count is missing") == 0);
-  CHECK(with_two("filling = 0.4", "filling = 0.7")
-            .find("particles.aggregate[2].filling is 0.7, but must be a number above 0 and at most 0.64") !=
+  CHECK(with_two("filling_factor = 0.4", "filling_factor = 0.7")
+            .find("particles.aggregate[2].filling_factor is 0.7, but must be a number above 0 and at most 0.64") !=
         std::string::npos);
   CHECK(
-      with_two("filling = 0.4", "filling = 0.006") ==
+      with_two("filling_factor = 0.4", "filling_factor = 0.006") ==
       "s.toml:15:9: particles.aggregate[2] is 51.09 m across (more than one side of the box of 100 m x 50 m); enlarge "
       "the box or lower the count");
   CHECK(with_two("[30, 0, 0]", "[30, 30, 0]")
-            .find("s.toml:17:9: particles.aggregate[2].place is outside the box (it extends 50 m and 25 m") == 0);
+            .find("s.toml:17:12: particles.aggregate[2].position is outside the box (it extends 50 m and 25 m") == 0);
   CHECK(with_two("[30, 0, 0]", "[30, 0, 1e6]").find("particles.aggregate[2] reaches 1000000 m from the mid-plane") !=
         std::string::npos);
   CHECK(with_two("[30, 0, 0]", "[-15, 0, 0]") ==
         "s.toml:14:1: particles.aggregate[1] and particles.aggregate[2] overlap (their centres are 7.141 m apart, "
         "their radii 5.04 m and 6.3 m); move one");
   CHECK(fault(least + two +
-              "[[moonlet]]\nradius = 3\ndensity = 900\nplace = [-45, 0, 0]\n"
-              "[[moonlet]]\nradius = 3\ndensity = 900\nplace = [-25, 0, 0]\n")
+              "[[moonlet]]\nradius = 3\ndensity = 900\nposition = [-45, 0, 0]\n"
+              "[[moonlet]]\nradius = 3\ndensity = 900\nposition = [-25, 0, 0]\n")
             .find("s.toml:23:1: particles.aggregate[1] and moonlet[2] overlap") == 0);
   CHECK(fault(least + "[particles.aggregate]\ncount = 9\n").find("must be a list of tables") != std::string::npos);
 }

@@ -14,8 +14,9 @@ using namespace keeler::test;
 
 namespace {
 
-const std::string two = "[[moonlet]]\nradius = 5.0\ndensity = 450.0\n"                                            // 11
-                        "[[moonlet]]\nplace = [-20, 10, 0.5]\nradius = 2\nmass = 3e4\nvelocity = [0, 1e-3, 0]\n"; // 14
+const std::string two =
+    "[[moonlet]]\nradius = 5.0\ndensity = 450.0\n"                                               // 11
+    "[[moonlet]]\nposition = [-20, 10, 0.5]\nradius = 2\nmass = 3e4\nvelocity = [0, 1e-3, 0]\n"; // 14
 
 std::string with_two(const std::string& part, const std::string& by) {
   return fault(least + changed(two, part, by));
@@ -41,9 +42,9 @@ TEST_CASE("moonlets are read in the order of the scene") {
 
 TEST_CASE("the resolved scene has each moonlet and reads back to an equal scene") {
   const Scene scene = parse_scene(least + two, "s.toml");
-  CHECK(scene.resolved.find("\n[[moonlet]]\nradius = 5.0\ndensity = 450.0\nplace = [0.0, 0.0, 0.0]\n") !=
+  CHECK(scene.resolved.find("\n[[moonlet]]\nradius = 5.0\ndensity = 450.0\nposition = [0.0, 0.0, 0.0]\n") !=
         std::string::npos);
-  CHECK(scene.resolved.find("\n[[moonlet]]\nradius = 2.0\nmass = 30000.0\nplace = [-20.0, 10.0, 0.5]\n") !=
+  CHECK(scene.resolved.find("\n[[moonlet]]\nradius = 2.0\nmass = 30000.0\nposition = [-20.0, 10.0, 0.5]\n") !=
         std::string::npos);
   CHECK(parse_scene(scene.resolved, "r.toml").resolved == scene.resolved);
   CHECK(parse_stored_scene(scene.resolved, "r.toml").moonlets.size() == 2);
@@ -75,10 +76,10 @@ TEST_CASE("faults of a moonlet are reported with its number and line") {
   CHECK(with_two("mass = 3e4", "mass = 3e9").find("s.toml:17:8: moonlet[2].mass gives a density of 8.95e7 kg/m^3") ==
         0);
   CHECK(with_two("[-20, 10, 0.5]", "[-20, 10]")
-            .find("moonlet[2].place is a list of 2 numbers, but must be three "
+            .find("moonlet[2].position is a list of 2 numbers, but must be three "
                   "numbers") != std::string::npos);
   CHECK(with_two("[-20, 10, 0.5]", "[-51, 10, 0]")
-            .find("moonlet[2].place is outside the box (it extends 50 m and 25 m") != std::string::npos);
+            .find("moonlet[2].position is outside the box (it extends 50 m and 25 m") != std::string::npos);
   CHECK(with_two("[-20, 10, 0.5]", "[-20, 10, -101]")
             .find("moonlet[2] reaches 101 m from the mid-plane (more than the longer side of the box, 100 m") !=
         std::string::npos);
@@ -108,7 +109,7 @@ TEST_CASE("moonlets that overlap are refused, also across the edge") {
   CHECK(with_two("[-20, 10, 0.5]", "[6, 0, 0]").find(near + "6 m apart, their radii 5 m and 2 m); move one") == 0);
   CHECK(with_two("[-20, 10, 0.5]", "[7, 0, 0]").empty());
   const std::string at_the_edge =
-      changed(changed(two, "[[moonlet]]\n", "[[moonlet]]\nplace = [48, 0, 0]\n"), "[-20, 10, 0.5]", "[-48, 0, 0]");
+      changed(changed(two, "[[moonlet]]\n", "[[moonlet]]\nposition = [48, 0, 0]\n"), "[-20, 10, 0.5]", "[-48, 0, 0]");
   CHECK(fault(least + at_the_edge).find("overlap (their centres are 4 m apart") != std::string::npos);
 }
 

@@ -67,7 +67,7 @@ sizes = { law = "power", exponent = 2.5, min = 0.5, max = 5 }
 streamlines = { waves = 3, bunching = 0.7, inclination = 1.5 }
 [collisions]
 finder = "linear-full"
-elastic_below = 0
+elastic_below_speed = 0
 restitution = { law = "constant", value = 0.25 }
 [gravity]
 solver = "direct"
@@ -350,12 +350,12 @@ radius = 1.0
 
 [collisions]
 finder = "certified"
-elastic_below = 0.01
+elastic_below_speed = 0.01
 
 [collisions.restitution]
 law = "bridges"
 scale = 0.34
-largest = 1.0
+max_coefficient = 1.0
 
 [time]
 step = 0.005

@@ -90,7 +90,7 @@ Scene pile_scene(const std::string& more) {
                      "time = { step = 2e-3, end = 1.0 }\ngravity = { solver = \"direct\", kick_every = 2 }\n" +
                          more +
                          "[particles]\ncount = 60\ndensity = 1500.0\nsizes = { law = \"equal\", radius = 1.0 }\n"
-                         "[[particles.aggregate]]\ncount = 60\nplace = [0, 0, 0]\nfilling = 0.45\n",
+                         "[[particles.aggregate]]\ncount = 60\nposition = [0, 0, 0]\nfilling_factor = 0.45\n",
                      "test scene");
 }
 

@@ -87,8 +87,8 @@ TEST_CASE("a rough ring around moonlets has the same bits for 1 to 3 threads, sp
                                   "particles = { optical_depth = 0.5, density = 900.0, sizes = { law = \"power\", "
                                   "exponent = 3.0, min = 0.4, max = 1.5 } }\n"
                                   "gravity.solver = \"tree\"\ntime = { step = 2e-3, end = 1.0 }\n"
-                                  "[[moonlet]]\nradius = 8.0\ndensity = 450.0\nplace = [26, 3, 0]\n"
-                                  "[[moonlet]]\nradius = 3.0\ndensity = 900.0\nplace = [-10, 0, 0]\n" +
+                                  "[[moonlet]]\nradius = 8.0\ndensity = 450.0\nposition = [26, 3, 0]\n"
+                                  "[[moonlet]]\nradius = 3.0\ndensity = 900.0\nposition = [-10, 0, 0]\n" +
                                       rough,
                                   "test scene");
   const Patch start = initial_patch(scene);

@@ -138,7 +138,7 @@ TEST_CASE("a passage makes the eccentricity of the impulse, and moves orbits awa
 // wave along the orbit has the wavelength 3π d (Showalter et al. 1986).
 TEST_CASE("streamlines downstream have the phases of a wave of wavelength 3 pi d, when they stand side by side") {
   const double h = 1e-4, behind = 12.0; // orbits
-  const Scene scene = scene_with(h, fmt::format("passage = 10.0\nupright_after = {}\n", behind), 22.0);
+  const Scene scene = scene_with(h, fmt::format("passage = 10.0\ndownstream_time = {}\n", behind), 22.0);
   const std::vector<double> places = {-1.5e4, -6e3, 0.0, 6e3, 1.5e4};
   const Patch start = circles(scene, places);
   Simulation simulation(scene, start);
@@ -206,13 +206,14 @@ TEST_CASE("an inclined satellite lifts the ring, and a level one does not") {
 }
 
 TEST_CASE("a run with a satellite goes on from its fields to the bit, on any number of threads") {
-  const Scene scene = parse_scene(
-      "planet.preset = \"saturn-a-ring\"\nbox.size = [40.0, 40.0]\n"
-      "particles = { count = 300, density = 900.0, sizes = { law = \"equal\", radius = 0.8 } }\n"
-      "time = { step = 5e-3, end = 1.0 }\n"
-      "satellite = { mass = 1e7, distance = -200.0, passage = 0.3, every = 0.4, upright_after = 1.0, eccentricity = 9 "
-      "}\n",
-      "test scene");
+  const Scene scene =
+      parse_scene("planet.preset = \"saturn-a-ring\"\nbox.size = [40.0, 40.0]\n"
+                  "particles = { count = 300, density = 900.0, sizes = { law = \"equal\", radius = 0.8 } }\n"
+                  "time = { step = 5e-3, end = 1.0 }\n"
+                  "satellite = { mass = 1e7, distance = -200.0, passage = 0.3, every = 0.4, downstream_time = 1.0, "
+                  "eccentricity = 9 "
+                  "}\n",
+                  "test scene");
   const Patch start = initial_patch(scene);
   const auto bits = [](const Simulation& simulation) {
     const Patch patch = simulation.patch();
@@ -268,7 +269,7 @@ std::optional<forces::SatellitePassage> dragging(const Scene& scene, double leas
 // The speed of the sweep: the passage is at t(X) = (X_s t_0 − X t_u)/(X_s − X), so dX/dt = d/(t_0 − t_u).
 TEST_CASE("the drag of a passage is the fastest that it moves a particle over the speed of its sweep") {
   const double upright = 40.0;
-  const Scene scene = scene_with(1e-5, fmt::format("passage = 3.0\nupright_after = {}\n", upright), 6.0);
+  const Scene scene = scene_with(1e-5, fmt::format("passage = 3.0\ndownstream_time = {}\n", upright), 6.0);
   const Patch start = circles(scene, {0.0});
   Simulation simulation(scene, start);
   double fastest = 0.0, before = 0.0, time = 0.0;
@@ -287,7 +288,7 @@ TEST_CASE("the drag of a passage is the fastest that it moves a particle over th
 
 TEST_CASE("the passages that drag particles along are those far from the time when the cell stands upright") {
   // 0.77 · 1e-3 · 2π per orbit: 0.6 at 124 orbits from 30
-  const Scene scene = scene_with(1e-3, "passage = 10.0\nevery = 25.0\nupright_after = 20.0\n", 1.0);
+  const Scene scene = scene_with(1e-3, "passage = 10.0\nevery = 25.0\ndownstream_time = 20.0\n", 1.0);
   CHECK(!dragging(scene, forces::doubtful_drag, 0.0, 150.0));
   const std::optional<forces::SatellitePassage> first = dragging(scene, forces::doubtful_drag, 0.0, 400.0);
   REQUIRE(first.has_value());
@@ -296,11 +297,11 @@ TEST_CASE("the passages that drag particles along are those far from the time wh
   CHECK(dragging(scene, forces::doubtful_drag, 160.0 + 1e-6, 400.0)->orbits == 185.0);
   CHECK(!dragging(scene, forces::doubtful_drag, 160.0 + 1e-6, 184.0));
   // before it
-  const Scene late = scene_with(1e-3, "passage = 210.0\nevery = 100.0\nupright_after = 200.0\n", 1.0);
+  const Scene late = scene_with(1e-3, "passage = 210.0\nevery = 100.0\ndownstream_time = 200.0\n", 1.0);
   CHECK(dragging(late, forces::doubtful_drag, 0.0, 1000.0)->orbits == 10.0);
   CHECK(dragging(late, forces::doubtful_drag, 250.0, 1000.0)->orbits == 610.0); // 310, 410 and 510 are near 410
   // without `every` there is one
-  const Scene once = scene_with(1e-3, "passage = 10.0\nupright_after = 200.0\n", 1.0);
+  const Scene once = scene_with(1e-3, "passage = 10.0\ndownstream_time = 200.0\n", 1.0);
   CHECK(dragging(once, forces::doubtful_drag, 0.0, 1000.0)->orbits == 10.0);
   CHECK(!dragging(once, forces::doubtful_drag, 11.0, 1000.0));
 }
