@@ -132,9 +132,12 @@ GravityBench bench_gravity_of(const Patch& state, const std::vector<GravityChoic
 
 GravityBench bench_gravity(const GravityBenchSettings& settings) {
   PhaseProgress progress(settings.progress);
-  const GravityState kind = settings.clumped ? GravityState::clumped : GravityState::uniform;
-  const Patch patch = gravity_state(settings.count, kind, progress).patch;
-  return bench_gravity_of(patch, chosen(settings, patch.size()), settings.repeats, progress);
+  const double begin = wall_seconds();
+  const Patch patch = gravity_state(settings.count, settings.state, progress).patch;
+  const double prepared = wall_seconds();
+  GravityBench bench = bench_gravity_of(patch, chosen(settings, patch.size()), settings.repeats, progress);
+  bench.preparation_s = prepared - begin;
+  return bench;
 }
 
 } // namespace keeler::bench

@@ -15,9 +15,9 @@
 namespace keeler::bench {
 
 struct GravityBenchSettings {
-  std::size_t count = 100000; ///< rounded to whole tiles, at least a patch of 2 × 2 λ_cr
-  bool clumped = true;        ///< with wakes; otherwise a uniform initial state
-  std::string solver;         ///< empty: all, `direct` only up to 10000 particles
+  std::size_t count = 100000;    ///< rounded to whole tiles
+  std::string state = "settled"; ///< one of gravity_state_names()
+  std::string solver;            ///< empty: all, `direct` only up to 10000 particles
   int repeats = 5;
   std::function<void(const Progress&)> progress; ///< may be empty
 };
@@ -41,6 +41,7 @@ struct GravityBench {
   std::size_t sample = 0;      ///< particles with exact forces, drawn evenly from the patch
   std::size_t edge_sample = 0; ///< further ones near the edges
   double edge_width_m = 0.0;   ///< largest distance of these from an edge
+  double preparation_s = 0.0;  ///< wall time to make or read the state
 };
 
 /// Makes the patch and measures each setting. Precondition: count and repeats are positive.

@@ -58,6 +58,10 @@ std::vector<std::string> gravity_solver_names() {
   return names;
 }
 
+std::vector<std::string> gravity_state_names() {
+  return {"settled", "clumped", "uniform"};
+}
+
 GravityChoice default_gravity_choice(const std::string& solver) {
   if (solver == "tree")
     return tree(GravitySettings{}.opening_angle);

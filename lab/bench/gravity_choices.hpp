@@ -1,4 +1,4 @@
-// The only list of the gravity solvers and settings that benches compare.
+// The only lists of the gravity solvers, settings and states that benches choose from.
 #pragma once
 
 #include <keeler/gravity/solver.hpp>
@@ -21,6 +21,9 @@ std::vector<GravityChoice> gravity_choices();
 
 /// Returns the names of the solvers in that list.
 std::vector<std::string> gravity_solver_names();
+
+/// Returns the names of the states (gravity_states.hpp), the default first.
+std::vector<std::string> gravity_state_names();
 
 /// Returns a solver with the default settings of a scene. Throws std::invalid_argument for a name not in the list.
 GravityChoice default_gravity_choice(const std::string& solver);

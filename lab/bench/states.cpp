@@ -79,19 +79,6 @@ end = {5}
                      "bench");
 }
 
-Patch evolved(Scene scene, const Patch& start, double orbits, double step, PhaseProgress& progress) {
-  assert(orbits >= 0.0 && step > 0.0);
-  scene.collisions.finder = "certified";
-  scene.time.step = step;
-  Simulation simulation(scene, start);
-  const long steps = std::lround(orbits / step);
-  for (long k = 0; k < steps; ++k) {
-    simulation.advance();
-    progress.add(static_cast<double>(start.size()));
-  }
-  return simulation.patch();
-}
-
 // Returns the number of small particles that a moonlet displaces in a layer of this optical depth.
 double covered(double optical_depth, const particles::SizeLaw& sizes) {
   return optical_depth * moonlet_radius * moonlet_radius / sizes.mean_power(2);
@@ -113,6 +100,17 @@ double distance_from_centre(const Patch& patch, std::size_t k) {
 }
 
 } // namespace
+
+Patch evolved(const Scene& scene, const Patch& start, double orbits, PhaseProgress& progress) {
+  assert(orbits >= 0.0);
+  Simulation simulation(scene, start);
+  const long steps = std::lround(orbits / scene.time.step);
+  for (long k = 0; k < steps; ++k) {
+    simulation.advance();
+    progress.add(static_cast<double>(start.size()));
+  }
+  return simulation.patch();
+}
 
 Patch with_moonlet(const Patch& patch, double radius) {
   assert(patch.size() > 0 && radius > 0.0);
@@ -153,14 +151,16 @@ BenchState bench_state(const DriftBenchSettings& settings, PhaseProgress& progre
     require_room_for_moonlet(side * state.scene.size_x);
 
   const double particle_orbits = recipe.orbits * tile_count + (moonlet ? moonlet_orbits * count : 0.0);
+  Scene making = state.scene;
+  making.collisions.finder = "certified";
+  making.time.step = recipe.step;
   progress.begin("preparing an equilibrium", particle_orbits / recipe.step);
-  state.patch = evolved(state.scene, initial_patch(state.scene), recipe.orbits, recipe.step, progress);
+  state.patch = evolved(making, initial_patch(making), recipe.orbits, progress);
   if (side > 1.0)
     state.patch =
         initial_conditions::tiled_patch(state.patch, static_cast<std::size_t>(side), static_cast<std::size_t>(side));
   if (moonlet)
-    state.patch =
-        evolved(state.scene, with_moonlet(state.patch, moonlet_radius), moonlet_orbits, recipe.step, progress);
+    state.patch = evolved(making, with_moonlet(state.patch, moonlet_radius), moonlet_orbits, progress);
   return state;
 }
 

@@ -18,6 +18,9 @@ struct BenchState {
   Patch patch;
 };
 
+/// Evolves a patch by the scene's step for some orbits; reports one particle and step as a unit of work.
+Patch evolved(const Scene& scene, const Patch& start, double orbits, PhaseProgress& progress);
+
 /// Makes the state. Precondition: count, step_orbits and optical_depth are positive.
 /// Throws UsageError for an unknown finder or an impossible patch.
 BenchState bench_state(const DriftBenchSettings& settings, PhaseProgress& progress);

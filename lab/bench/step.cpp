@@ -4,6 +4,7 @@
 
 #include <keeler/comm/same_request.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/stopwatch.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/io/snapshot.hpp>
@@ -52,6 +53,7 @@ GravityChoice choice_for(const StepBenchSettings& settings, const BenchState& st
 // particles come from rank 0.
 void require_same_bench(const StepBenchSettings& settings, const BenchState& state, const GravityChoice& choice) {
   std::vector<comm::RequestEntry> request = {{"--count", fmt::format("{}", settings.count)},
+                                             {"--state", settings.state},
                                              {"--repeats", fmt::format("{}", settings.repeats)},
                                              {"--solver", choice.solver},
                                              {"--kick-every", fmt::format("{}", choice.settings.kick_every)},
@@ -77,8 +79,8 @@ StepBench bench_step(const StepBenchSettings& settings) {
   BenchState state;
   StepBench bench;
   settings.ranks.together([&] {
-    state =
-        settings.from ? stored_state(*settings.from) : gravity_state(settings.count, GravityState::clumped, progress);
+    const Stopwatch watch(bench.preparation_s);
+    state = settings.from ? stored_state(*settings.from) : gravity_state(settings.count, settings.state, progress);
     bench.choice = choice_for(settings, state);
   });
   require_same_bench(settings, state, bench.choice);

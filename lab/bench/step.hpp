@@ -1,4 +1,4 @@
-// Times whole steps with gravity and collisions: in the clumped state of gravity_states.hpp, or in a snapshot.
+// Times whole steps with gravity and collisions: in a state of gravity_states.hpp, or in a snapshot.
 #pragma once
 
 #include <keeler/bench/gravity_choices.hpp>
@@ -14,8 +14,9 @@
 namespace keeler::bench {
 
 struct StepBenchSettings {
-  std::size_t count = 100000;        ///< rounded to whole tiles, at least a patch of 2 × 2 λ_cr
-  std::optional<std::string> from;   ///< a snapshot to time with its scene; `count` is then ignored
+  std::size_t count = 100000;        ///< rounded to whole tiles
+  std::string state = "settled";     ///< one of gravity_state_names()
+  std::optional<std::string> from;   ///< a snapshot to time with its scene; `count` and `state` are then ignored
   std::optional<int> kick_every;     ///< default: 1, or the value of the snapshot's scene
   std::optional<std::string> solver; ///< with its default settings; default: tree, or the snapshot's solver
   int repeats = 5;
@@ -25,6 +26,7 @@ struct StepBenchSettings {
 
 struct StepBench {
   GravityChoice choice;
+  double preparation_s = 0.0; ///< wall time to make or read the state
   double step_orbits = 0.0;
   double dispersion_r_omega = 0.0; ///< c_x of the timed state, ⟨r⟩ Ω
   TimedSteps timed;                ///< of whole kick intervals

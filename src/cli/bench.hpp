@@ -5,6 +5,8 @@
 #include "common_options.hpp"
 #include "progress_line.hpp"
 
+#include <keeler/bench/gravity_choices.hpp>
+
 namespace keeler::cli {
 
 void add_bench_drift(CLI::App& bench, Action& action);
@@ -32,6 +34,15 @@ struct BenchThreadOption {
 inline void add_repeats(CLI::App& command, int& repeats) {
   command.add_option("--repeats", repeats, "number of measurements; their medians are printed (default: 5)")
       ->transform(repeat_number());
+}
+
+/// Adds --state NAME of the benches with self-gravity.
+inline CLI::Option& add_state(CLI::App& command, std::string& state) {
+  return one_of(command.add_option("--state", state,
+                                   "settled: self-gravity wakes past their overshoot, made once in minutes and kept in "
+                                   "the user's cache folder; clumped: wakes as they form; uniform: a uniform initial "
+                                   "state (default: settled)"),
+                bench::gravity_state_names());
 }
 
 /// Returns measure(settings). Rank 0 shows progress after five seconds.

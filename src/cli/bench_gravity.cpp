@@ -16,7 +16,6 @@ namespace {
 
 struct GravityOptions {
   bench::GravityBenchSettings bench;
-  std::string state = "clumped";
   bool json = false;
   BenchThreadOption threads;
 };
@@ -31,7 +30,8 @@ void print_json(const GravityOptions& options, const bench::GravityBench& b) {
     line["threads"] = threads();
     json["rows"].push_back(line);
   }
-  json["state"] = options.state;
+  json["state"] = options.bench.state;
+  json["preparation_s"] = b.preparation_s;
   json["count"] = b.count;
   json["box_m"] = {b.size_x_m, b.size_y_m};
   json["offset_m"] = b.offset_m;
@@ -44,7 +44,7 @@ void print_json(const GravityOptions& options, const bench::GravityBench& b) {
 }
 
 void print_text(const GravityOptions& options, const bench::GravityBench& b) {
-  print("{}, {}, box {} m x {} m, shear offset {} m, {}\n", pluralize(b.count, "particle"), options.state,
+  print("{}, {}, box {} m x {} m, shear offset {} m, {}\n", pluralize(b.count, "particle"), options.bench.state,
         format_number(b.size_x_m, 4), format_number(b.size_y_m, 4), format_number(b.offset_m, 4),
         pluralize(threads(), "thread"));
   print("errors relative to the rms force, of {} particles and of {} within {:g} m of the edges; medians of {}\n\n",
@@ -61,7 +61,6 @@ void print_text(const GravityOptions& options, const bench::GravityBench& b) {
 
 ExitCode bench(GravityOptions& options) {
   options.threads.apply();
-  options.bench.clumped = options.state == "clumped";
   const bench::GravityBench result = measured(options.bench, bench::bench_gravity);
   if (options.json)
     print_json(options, result);
@@ -80,9 +79,7 @@ void add_bench_gravity(CLI::App& bench_command, Action& action) {
                             "one solver (default: all, direct only up to 10000 particles)"),
          bench::gravity_solver_names());
   gravity.add_option("--count", options->bench.count, "particles (default: 100000)")->transform(particle_number());
-  one_of(gravity.add_option("--state", options->state,
-                            "clumped: with self-gravity wakes; uniform: a uniform initial state (default: clumped)"),
-         {"clumped", "uniform"});
+  add_state(gravity, options->bench.state);
   add_repeats(gravity, options->bench.repeats);
   options->threads.add_to(gravity);
   gravity.add_flag("--json", options->json, "print the numbers as JSON");

@@ -33,27 +33,31 @@ refuses "no particles" "--count" bench drift --count 0
 
 runs 0 bench gravity --count 100 --state uniform --repeats 1 --json
 has_numbers "bench gravity" error_rms error_p999 error_x error_y error_z error_edge edge_pull net_force ns_per_particle \
-  threads count sample
+  threads count sample preparation_s
 for row in '"solver": "direct"' '"solver": "tree"' '"settings": "opening_angle 0.6"' '"state": "uniform"'; do
   grep -qF "$row" "$work/out" || fail "bench gravity: no $row in: $(cat "$work/out")"
 done
 errors() { grep -E '"(error|edge|net)_' "$work/out"; }
-runs 0 bench gravity --count 100 --repeats 1 --json --solver tree
+runs 0 bench gravity --count 100 --state clumped --repeats 1 --json --solver tree
 errors >"$work/one"
 grep -q '"solver": "direct"' "$work/out" && fail "bench gravity --solver tree has other solvers"
-runs 0 bench gravity --count 100 --repeats 1 --json --solver tree --threads 2
+runs 0 bench gravity --count 100 --state clumped --repeats 1 --json --solver tree --threads 2
 errors | cmp - "$work/one" || fail "errors depend on the threads"
 runs 0 bench gravity --count 100 --state uniform --repeats 1 --solver tree
 prints "bench gravity as text" "edge pull"
 refuses "an unknown solver" "--solver" bench gravity --solver guess
 refuses "an unknown state" "--state" bench gravity --state lumpy
 
-runs 0 bench step --count 100 --repeats 1 --kick-every 3 --json
+runs 0 bench step --count 100 --state clumped --repeats 1 --kick-every 3 --json
 has_numbers "bench step" ns_per_particle_step drift advance gravity kick build reject solve events ns_drift_per_collision drift_over_pair \
   ns_events_per_collision collisions_per_particle_step contacts_per_particle_step pairs_per_particle survivors_per_particle \
-  contacts lists_made deferred bytes_per_particle line_ns pair_ns dispersion_r_omega kick_every count steps
+  contacts lists_made deferred bytes_per_particle line_ns pair_ns dispersion_r_omega kick_every count steps preparation_s
+grep -qF '"state": "clumped"' "$work/out" || fail "bench step: no state in: $(cat "$work/out")"
 grep -q speedup "$work/out" && fail "bench step: a speedup on one thread in: $(cat "$work/out")"
 [ $(($(sed -nE 's/^  "steps": ([0-9]+)$/\1/p' "$work/out") % 3)) -eq 0 ] || fail "bench step: no whole kick intervals"
+runs 0 bench step --count 100 --state uniform --repeats 1
+prints "bench step of a uniform state" "state                              uniform"
+refuses "an unknown state of a step" "--state" bench step --state lumpy
 refuses "no interval" "--kick-every" bench step --kick-every 0
 
 small_scene
@@ -74,6 +78,7 @@ for key in step drift events gravity pair; do
 done
 grep -qF "\"from\": \"$work/run/snap_000001.hdf\"" "$work/out" || fail "bench step: no file in: $(cat "$work/out")"
 refuses "a number of particles for a snapshot" "--count" bench step --count 100 --from "$work/run/snap_000001.hdf"
+refuses "a state for a snapshot" "--state" bench step --state uniform --from "$work/run/snap_000001.hdf"
 refuses_with 4 "no such snapshot" "absent.hdf" bench step --from "$work/absent.hdf"
 refuses_with 4 "no snapshot" "'$work/scene.toml' is no snapshot: it does not begin as HDF5 files do" bench step --from "$work/scene.toml"
 refuses_with 4 "a checkpoint" "is not a Keeler snapshot" bench step --from "$(newest_checkpoint "$work/run")"

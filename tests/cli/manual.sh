@@ -71,7 +71,7 @@ names bench
 runs 0 bench gravity --count 200 --state uniform --solver tree --repeats 1 --json
 sed -i 's/^      "/    "/' "$work/out" # of its rows
 names bench
-runs 0 bench step --count 200 --repeats 1 --json
+runs 0 bench step --count 200 --state uniform --repeats 1 --json
 names bench
 runs 0 run "$work/scene.toml" -o "$work/run" --set time.end=0.004 --json
 names run

@@ -222,9 +222,9 @@ differ "it has the folder = $work/b/none, and rank 0 has the folder = $work/none
 differ 'it has --force = given' "$uniform" "$uniform --force"
 differ 'it has --wall-time = 10' "$uniform" "$uniform --wall-time 10"
 differ 'it has the command = keeler bench step, and rank 0 has the command = keeler run' "$uniform" \
-  'bench step --count 1000 --solver fft'
+  'bench step --count 1000 --state clumped --solver fft'
 differ 'it has the command = keeler run, and rank 0 has the command = keeler bench step' \
-  'bench step --count 1000 --solver fft' "$uniform"
+  'bench step --count 1000 --state clumped --solver fft' "$uniform"
 differ 'the command = keeler resume' "resume $work/uniform-1" "$uniform"
 differ 'the command = keeler run --help' "$uniform" 'run --help'
 differ 'the command = keeler --version' '--version' "$uniform"
@@ -232,10 +232,10 @@ differ "the command = keeler, and" "$uniform" ''
 differ 'it has --until = 0.3, and rank 0 has --until = not given' "resume $work/uniform-1" \
   "resume $work/uniform-1 --until 0.3"
 differ 'the folder = ' "resume $work/uniform-1" "resume $work/uniform-2-1"
-differ 'it has --count = 3000, and rank 0 has --count = 1000' 'bench step --count 1000 --solver fft' \
-  'bench step --count 3000 --solver fft'
-differ 'it has --repeats = 2' 'bench step --count 1000 --solver fft --repeats 1' \
-  'bench step --count 1000 --solver fft --repeats 2'
+differ 'it has --count = 3000, and rank 0 has --count = 1000' 'bench step --count 1000 --state clumped --solver fft' \
+  'bench step --count 3000 --state clumped --solver fft'
+differ 'it has --repeats = 2' 'bench step --count 1000 --state clumped --solver fft --repeats 1' \
+  'bench step --count 1000 --state clumped --solver fft --repeats 2'
 differ "'keeler info' is for one process" "$uniform" "info $work/uniform-1"
 # one name, but different files in the two folders
 cp "$(last_of "$work/uniform-1")" "$work/a/start.hdf"
@@ -270,7 +270,7 @@ for programs in "$other_build : $keeler" "$keeler : $other_build"; do
 done
 
 # A bench prints the gain by ranks and the cost of their communication.
-on_ranks 2 1 0 bench step --count 3000 --solver fft --repeats 1 --json
+on_ranks 2 1 0 bench step --count 3000 --state clumped --solver fft --repeats 1 --json
 python3 - "$work/out" <<'END' || fail "bench step: $(cat "$work/out")"
 import json, sys
 bench = json.load(open(sys.argv[1]))

@@ -53,7 +53,7 @@ TEST_CASE("the bench's patch is the example's, two critical wavelengths wide or 
 
 TEST_CASE("the clumped state has wakes, and the forces in its tiles equal those in the patch") {
   PhaseProgress silent({});
-  const Patch tile = gravity_state(2400, GravityState::clumped, silent).patch;
+  const Patch tile = gravity_state(2400, "clumped", silent).patch;
   REQUIRE(tile.offset > 1.0); // else the tiling tests little
   CHECK(cells::largest_overlap(tile).depth < 1e-12);
   CHECK(find_wakes(diagnostics::mean_autocorrelation(std::span(&tile, 1)), diagnostics::critical_wavelength(tile))
