@@ -162,46 +162,41 @@ def neighbour_lists():
     return d
 
 
-def parallel_rounds():
-    d = Drawing("Domains of the parallel contact loop: half domains and three rounds", 760, 410)
-    left, width, halves = 130, 560, 8
-    half = width / halves
-    for k in range(halves + 1):
-        d.line(left + k * half, 44, left + k * half, 330, "thin dash")
-    d.text(left + width / 2, 30, "the box across (x), cut into half domains with as many first contacts each", "middle", "small faint")
-    rows = [(60, "round 1"), (150, "round 2"), (240, "last round")]
-    for y, words in rows:
-        d.text(left - 14, y + 32, words, "end")
-    for k in range(4):
-        d.rect(left + 2 * k * half + 1, 60, 2 * half - 2, 54, "pa" if k % 2 else "pc", 4)
-        d.text(left + (2 * k + 1) * half, 108, f"domain {k}", "middle", "small")
-    for k in range(3):
-        d.rect(left + (2 * k + 1) * half + 1, 150, 2 * half - 2, 54, "pa" if k % 2 else "pc", 4)
-        d.text(left + (2 * k + 2) * half, 198, f"domain {k + 1}", "middle", "small")
-    for x in (left, left + 7 * half):
-        d.rect(x + 1, 150, half - 2, 54, "pa", 4)
-    d.text(left + half / 2, 198, "domain 0", "middle", "small")
-    d.text(left + 7.5 * half, 198, "domain 0", "middle", "small")
-    d.rect(left + 1, 240, width - 2, 54, "pc", 4)
-    d.text(left + width / 2, 288, "one domain: the whole box", "middle", "small")
+def contact_domains():
+    d = Drawing("Domains of the contact loop: blocks, shifted blocks, and the whole box", 760, 360)
+    side, half, top = 200, 50, 46
+    lefts = (40, 280, 520)
+    for left, words in zip(lefts, ("round 1: blocks", "round 2: shifted by half a block", "last round: the whole box")):
+        d.text(left + side / 2, 30, words, "middle")
+        d.rect(left, top, side, side, "pc", 2)
+    for k in (0, 1):
+        for m in (0, 1):
+            if k != m:
+                d.rect(lefts[0] + 2 * k * half, top + 2 * m * half, 2 * half, 2 * half, "pa")
+    shifted = ((-1, 1), (1, 2), (3, 1))  # begin and width along one side, of the box
+    for k, (x, wide) in enumerate(shifted):
+        for m, (y, high) in enumerate(shifted):
+            if k % 2 != m % 2:
+                d.rect(lefts[1] + max(x, 0) * half, top + max(y, 0) * half, wide * half, high * half, "pa")
+
     def contact(x, y, look):
         d.dot(x - 5, y, 5, look)
         d.dot(x + 5, y, 5, look)
-    for x in (0.9, 2.6, 3.2, 5.0, 6.9):
-        contact(left + x * half, 78, "a")
-    contact(left + 4 * half, 78, "b")
-    contact(left + 4 * half, 168, "a")
-    d.line(left + 4 * half, 86, left + 4 * half, 156, "sb", True)
-    wide = left + 6.45 * half
-    for y in (78, 168, 258):
-        contact(wide, y, "a" if y == 258 else "b")
-        d.line(wide - 0.75 * half, y + 12, wide + 0.75 * half, y + 12, "sa" if y == 258 else "sb")
-    d.line(wide, 94, wide, 156, "sb", True)
-    d.line(wide, 184, wide, 246, "sb", True)
-    d.lines(left - 60, 352, (
-        "A contact is carried out (blue) if its domain owns both particles and all particles on their lists (bar: how far these reach).",
-        "Otherwise it is deferred (orange), with all later contacts of its two particles. If a deferred contact disturbs one that an",
-        "earlier round has carried out, that one is rolled back."))
+
+    def in_rounds(x, y, carried_out):
+        for k, left in enumerate(lefts):
+            if k <= carried_out:
+                contact(left + x * half, top + y * half, "a" if k == carried_out else "b")
+
+    for x, y in ((0.8, 0.9), (3.2, 1.1), (1.1, 3.2), (2.8, 2.7)):
+        in_rounds(x, y, 0)
+    in_rounds(2.0, 2.4, 1)
+    in_rounds(1.4, 2.05, 1)
+    in_rounds(2.0, 0.98, 2)
+    d.lines(40, 278, (
+        "A contact is carried out (blue) if its domain owns both particles and all particles on their lists. Otherwise it is deferred",
+        "(orange), with all later contacts of its two particles. To the last round come contacts where edges of both rounds cross.",
+        "If a deferred contact disturbs one that an earlier round has carried out, that one is rolled back."))
     return d
 
 
@@ -357,7 +352,7 @@ def house():
 def main():
     wrong = []
     FOLDER.mkdir(exist_ok=True)
-    for draw in (sheared_images, neighbour_lists, parallel_rounds, kick_drift_kick, slabs, transform_layout, house):
+    for draw in (sheared_images, neighbour_lists, contact_domains, kick_drift_kick, slabs, transform_layout, house):
         path = FOLDER / (draw.__name__.replace("_", "-") + ".svg")
         svg = draw().svg()
         if "--check" in sys.argv[1:]:

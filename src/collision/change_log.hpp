@@ -29,7 +29,7 @@ struct Change {
 
 class ChangeLog {
 public:
-  static constexpr std::uint32_t max_changes = 1u << 24; // per domain
+  static constexpr std::uint32_t max_changes = 1u << 20; // per domain
   static_assert((2 * DomainCut::max_domains + 1) * std::uint64_t{max_changes} < std::uint64_t{1} << 32);
 
   static ChangeNumber number_of(std::size_t domain, std::size_t index) {
@@ -51,7 +51,6 @@ public:
     logs_[domain].changes.clear();
     logs_[domain].spins.clear();
   }
-  void reserve(std::size_t domain, std::size_t changes) { logs_[domain].changes.reserve(changes); }
 
   std::size_t size(std::size_t domain) const { return logs_[domain].changes.size(); }
   /// False if the domain cannot number another two contacts.

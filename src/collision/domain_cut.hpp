@@ -1,65 +1,76 @@
-// The division of the box in a parallel step: each round of domains cuts it into strips across the orbit, the second
-// round through the middles of the strips of the first; the domain of the last round is the whole box.
+// The division of the box into domains of contacts: each round cuts it into a grid of blocks. Those of the second round
+// are shifted by half a block in both directions; the domain of the last round is the whole box.
 //
-// Invariants: edges are sorted, two for each strip; in each round every position belongs to exactly one domain.
+// Invariant: in each round every position belongs to exactly one domain. Across the x edge of the box, blocks of the
+// second round hold images, which the shear has moved along the box.
 #pragma once
+
+#include "neighbours/line.hpp"
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace keeler::collision {
 
-/// Positions across the box are fractions of it, in units of 2⁻³².
 class DomainCut {
 public:
   static constexpr std::size_t rounds = 3;
-  /// Largest number of domains per round: all rounds together are numbered in one byte.
-  static constexpr std::size_t max_domains = 127;
+  /// Largest number of domains per round.
+  static constexpr std::size_t max_domains = 2047;
 
-  struct Strip {
-    std::uint32_t begin = 0;
-    std::uint64_t width = 0;
-  };
-
-  /// Cuts the box into `domains` strips with equal numbers of these sample positions. Precondition: 0 < domains <=
-  /// max_domains.
-  void cut(std::vector<std::uint32_t> samples, std::size_t domains) {
-    assert(domains > 0 && domains <= max_domains);
-    per_round_ = domains;
-    std::sort(samples.begin(), samples.end());
-    edges_.clear();
-    for (std::size_t half = 0; half < 2 * domains; ++half)
-      edges_.push_back(samples.empty() ? 0 : samples[half * samples.size() / (2 * domains)]);
-    assert(std::is_sorted(edges_.begin(), edges_.end()));
+  /// Cuts the box into at most `domains` blocks per round, nearly square in a box whose sides have this ratio. Images
+  /// across the outer x edge are moved by `offset_y` along the box. Precondition: 0 < domains <= max_domains.
+  void cut(std::size_t domains, double x_over_y, std::uint32_t offset_y) {
+    assert(domains > 0 && domains <= max_domains && x_over_y > 0.0);
+    const double columns = std::rint(std::sqrt(static_cast<double>(domains) * x_over_y));
+    columns_ = static_cast<std::uint32_t>(std::clamp(columns, 1.0, static_cast<double>(domains)));
+    rows_ = static_cast<std::uint32_t>(domains / columns_);
+    offset_y_ = offset_y;
   }
 
   /// Returns the number of domains of all rounds, which are numbered round by round: [begin_of(r), end_of(r)).
-  std::size_t domains() const { return 2 * per_round_ + 1; }
-  std::size_t begin_of(std::size_t round) const { return round * per_round_; }
-  std::size_t end_of(std::size_t round) const { return std::min((round + 1) * per_round_, domains()); }
-
-  /// Returns the strip of a domain that is not of the last round.
-  Strip strip(std::size_t domain) const {
-    assert(domain < 2 * per_round_);
-    const std::size_t halves = edges_.size(), half = 2 * (domain % per_round_) + domain / per_round_;
-    return {edges_[half % halves], edges_[(half + 2) % halves] - edges_[half % halves]};
-  }
+  std::size_t domains() const { return 2 * per_round() + 1; }
+  std::size_t begin_of(std::size_t round) const { return round * per_round(); }
+  std::size_t end_of(std::size_t round) const { return std::min((round + 1) * per_round(), domains()); }
 
   /// Returns the number, within its round, of the domain that owns a position.
-  std::size_t owner(std::size_t round, std::uint32_t position) const {
+  std::size_t owner(std::size_t round, const BoxPosition& position) const {
     if (round + 1 == rounds)
       return 0;
-    const auto after = std::upper_bound(edges_.begin(), edges_.end(), position) - edges_.begin();
-    const std::size_t halves = edges_.size(), half = static_cast<std::size_t>(after) + halves - 1 - round;
-    return half % halves / 2;
+    const BoxPosition p = in_grid(round, position);
+    return (std::uint64_t{p.x} * columns_ >> 32) * rows_ + (std::uint64_t{p.y} * rows_ >> 32);
+  }
+
+  /// True if everything within `distance` of a position, across the edges of the box too, has the same owner.
+  bool is_inside(std::size_t round, const BoxPosition& position, const BoxDistance& distance) const {
+    if (round + 1 == rounds)
+      return true;
+    const BoxPosition p = in_grid(round, position);
+    return is_inside(p.x * columns_, distance.x * columns_) && is_inside(p.y * rows_, distance.y * rows_);
   }
 
 private:
-  std::size_t per_round_ = 0;        // domains of the first and of the second round
-  std::vector<std::uint32_t> edges_; // of half strips
+  std::size_t per_round() const { return std::size_t{columns_} * rows_; }
+
+  // Returns a position relative to the grid of a round.
+  BoxPosition in_grid(std::size_t round, const BoxPosition& position) const {
+    if (round == 0)
+      return position;
+    const std::uint32_t half_x = (std::uint32_t{1} << 31) / columns_, half_y = (std::uint32_t{1} << 31) / rows_;
+    const std::uint32_t x = position.x + half_x;
+    const bool beyond = x < half_x; // in the first column, as an image
+    return {x, position.y + half_y + (beyond ? offset_y_ : 0)};
+  }
+  // `place`, in the units of a block's side, is farther than `distance` from both ends.
+  static bool is_inside(std::uint32_t place, std::uint64_t distance) {
+    return place > distance && place + distance < std::uint64_t{1} << 32;
+  }
+
+  std::uint32_t columns_ = 1, rows_ = 1; // of blocks
+  std::uint32_t offset_y_ = 0;
 };
 
 } // namespace keeler::collision

@@ -30,7 +30,35 @@ std::unique_ptr<finders::Finder> finder_named(const std::string& name) {
   return finders::make_finder(name);
 }
 
+// Returns the number of domains that carries out contacts fastest: one per thread; and more where contacts are so many,
+// and particles too, that it pays to have what a domain touches in the cache of a processor.
+std::size_t domains_that_pay(std::size_t particles, std::size_t first_contacts) {
+  constexpr std::size_t min_contacts = 50, in_cache = 2500; // of a domain
+  const bool crowded = particles >= 16 * in_cache && first_contacts >= particles / 25;
+  const std::size_t domains = std::max(static_cast<std::size_t>(threads()), crowded ? particles / in_cache : 1);
+  return std::min(domains, first_contacts / min_contacts);
+}
+
 constexpr std::size_t searches_together = 64;
+
+// What some contacts of a step, which follow each other, did.
+struct Counted {
+  StepOutcome outcome;
+  CollisionTally tally;
+  DriftCosts costs;
+
+  void operator+=(const Counted& later) {
+    outcome.append(later.outcome);
+    add_counts(later, tally, costs);
+  }
+  static void add_counts(const Counted& counted, CollisionTally& tally, DriftCosts& costs) {
+    tally.fast += counted.tally.fast;
+    tally.slow += counted.tally.slow;
+    tally.unresolved += counted.tally.unresolved;
+    costs.contacts += counted.costs.contacts;
+    costs.recontacts += counted.costs.recontacts;
+  }
+};
 
 // The first contacts of a block of candidates.
 struct FirstContacts {
@@ -191,25 +219,32 @@ std::vector<Event> DriftEngine::solve(const StepContext& step) {
   return all;
 }
 
-// Carries out all contacts on several threads, where that cannot show in the result and each has enough contacts.
+// Carries out all contacts in domains, where that cannot show in the result and pays.
 // Otherwise returns false, with everything as it was.
 bool DriftEngine::carry_out_in_domains(const StepContext& step, const std::vector<Event>& first,
                                        const ContactCounter& counter) {
-  constexpr std::size_t min_contacts = 50; // per domain
   if (broad_phase_.through_grid() || step.watcher || !step.finder.exact())
     return false;
-  const std::size_t paying = std::min(static_cast<std::size_t>(threads()), first.size() / min_contacts);
   const std::size_t wanted = observer_ ? observer_->wants_domains() : 0;
-  const std::size_t domains = std::min(OptimisticLoop::max_domains, wanted > 0 ? wanted : paying);
+  const std::size_t domains = std::min(OptimisticLoop::max_domains,
+                                       wanted > 0 ? wanted : domains_that_pay(step.particles.size(), first.size()));
   if (domains < 2 || !optimistic_.carry_out(step, history_, broad_phase_.lists(), first, domains))
     return false;
-  optimistic_.visit_contacts([&](const Contact& contact, const CollisionRecord* record) {
-    if (counter.add(contact) && step.record_taker)
-      outcome_.records.push_back(*record);
-  });
+  count_contacts(step, counter);
   optimistic_.append_dirty(outcome_.dirty);
   costs_.widest_list = std::max(costs_.widest_list, optimistic_.max_partners());
   return true;
+}
+
+// Adds the contacts that were carried out in domains.
+void DriftEngine::count_contacts(const StepContext& step, const ContactCounter& counter) {
+  const auto all = ordered_total<Counted>(optimistic_.contacts(), [&](Counted& counted, std::size_t k) {
+    const ContactCounter some{counted.outcome, counted.tally, counted.costs, counter.own};
+    if (some.add(optimistic_.contact(k)) && step.record_taker)
+      counted.outcome.records.push_back(*optimistic_.record(k));
+  });
+  counter.outcome.append(all.outcome);
+  Counted::add_counts(all, counter.tally, counter.costs);
 }
 
 void DriftEngine::end_step(const StepContext& step) {

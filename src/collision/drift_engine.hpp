@@ -56,6 +56,7 @@ private:
   void find_candidates(const StepContext& step);
   std::vector<Event> solve(const StepContext& step);
   bool carry_out_in_domains(const StepContext& step, const std::vector<Event>& first, const ContactCounter& counter);
+  void count_contacts(const StepContext& step, const ContactCounter& counter);
   template<OrbitStore Orbits>
   void carry_out_in_sequence(const StepContext& step, std::span<const Event> first, Orbits& orbits);
   void end_step(const StepContext& step);

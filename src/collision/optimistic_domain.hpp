@@ -23,14 +23,11 @@ struct NewPath {
 };
 
 struct alignas(64) OptimisticDomain { // no two threads write to one cache line
-  std::vector<Event> assigned;        // the domain owns both particles
-  std::vector<Event> cross_domain;    // it owns the particle with the lower id; another domain owns the other
-  std::vector<Event> deferred;        // left to the next round
-  LockSchedule lock_schedule;
+  LockSchedule lock_schedule;         // for events of a particle of the domain with one of another domain
+  std::vector<Event> deferred;        // left to the next round; of those events, the ones of the lower id's domain
   DomainContacts contacts;
   std::vector<NewPath> unresolved;  // paths that meet a path which the domain may not roll back
   std::vector<std::uint32_t> dirty; // particles that changed for the first time here
-  EventQueue events;
   std::uint64_t max_partners = 0;
   std::uint64_t rolled_back = 0; // contacts
   bool failed = false;
@@ -54,7 +51,7 @@ public:
   /// `domain` is the number among all rounds.
   DomainScope(const DomainCut& cut, const NeighbourLists& lists, std::size_t round, std::size_t domain)
       : cut_(cut), lists_(lists), round_(round), domain_(domain), own_(domain - cut.begin_of(round)),
-        strip_(is_last() ? DomainCut::Strip{} : cut.strip(domain)), margin_(lists.farthest_across()) {
+        farthest_(lists.farthest_neighbour()) {
     assert(domain >= cut.begin_of(round) && domain < cut.end_of(round));
   }
 
@@ -62,14 +59,11 @@ public:
   std::size_t round() const { return round_; }
   bool is_last() const { return round_ + 1 == DomainCut::rounds; }
 
-  bool owns(std::uint32_t i) const { return cut_.owner(round_, lists_.across(i)) == own_; }
+  bool owns(std::uint32_t i) const { return cut_.owner(round_, lists_.position(i)) == own_; }
 
   /// True if the domain owns all particles on the list of i. Precondition: it owns i.
   bool encloses(std::uint32_t i) const {
-    if (is_last())
-      return true;
-    const std::uint64_t inside = lists_.across(i) - strip_.begin; // most are far from both edges
-    if (inside > margin_ && inside + margin_ < strip_.width)
+    if (cut_.is_inside(round_, lists_.position(i), farthest_)) // most are far from all edges
       return true;
     for (const std::uint32_t j : lists_.list(i))
       if (!owns(j))
@@ -81,8 +75,7 @@ private:
   const DomainCut& cut_;
   const NeighbourLists& lists_;
   std::size_t round_, domain_, own_; // own_: number in the round
-  DomainCut::Strip strip_;
-  std::uint64_t margin_; // farthest that lists reach across
+  BoxDistance farthest_;             // that lists reach
 };
 
 } // namespace keeler::collision

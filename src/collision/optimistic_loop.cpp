@@ -2,6 +2,7 @@
 
 #include "optimistic_orbits.hpp"
 
+#include <keeler/core/counting_sort.hpp>
 #include <keeler/core/parallel.hpp>
 
 #include <algorithm>
@@ -11,8 +12,6 @@
 namespace keeler::collision {
 
 void OptimisticDomain::clear() {
-  assigned.clear();
-  cross_domain.clear();
   deferred.clear();
   lock_schedule.clear();
   contacts.clear();
@@ -24,15 +23,15 @@ void OptimisticDomain::clear() {
 }
 
 std::size_t OptimisticDomain::bytes() const {
-  return (assigned.capacity() + cross_domain.capacity() + deferred.capacity()) * sizeof(Event) + events.bytes() +
-         lock_schedule.bytes() + contacts.bytes() + dirty.capacity() * sizeof(std::uint32_t);
+  return deferred.capacity() * sizeof(Event) + lock_schedule.bytes() + contacts.bytes() +
+         dirty.capacity() * sizeof(std::uint32_t);
 }
 
 bool OptimisticLoop::carry_out(const StepContext& context, StepHistory& history, NeighbourLists& lists,
                                const std::vector<Event>& first, std::size_t domains) {
   assert(context.finder.exact() && domains > 0 && domains <= max_domains);
   const Step step{context, history, lists};
-  begin_step(step, first, domains);
+  begin_step(step, domains);
   for (std::size_t round = 0; round < DomainCut::rounds; ++round) {
     if (round == 0)
       run_round(step, round, first);
@@ -41,17 +40,12 @@ bool OptimisticLoop::carry_out(const StepContext& context, StepHistory& history,
     if (std::any_of(state_.domains.begin(), state_.domains.end(), [](const OptimisticDomain& d) { return d.failed; }))
       return roll_back_all(step);
   }
-  return merge_contacts(context.particles) || roll_back_all(step);
+  return order_.sort(state_.domains, state_.cut.end_of(0), context) || roll_back_all(step);
 }
 
-// Cuts the box so that each domain has an equal number of the first contacts.
-void OptimisticLoop::begin_step(const Step& step, const std::vector<Event>& first, std::size_t domains) {
-  constexpr std::size_t samples = 64; // per domain; contacts are nearly sorted across the box, so few suffice
-  const std::size_t stride = 1 + first.size() / (samples * domains);
-  std::vector<std::uint32_t> across;
-  for (std::size_t e = 0; e < first.size(); e += stride)
-    across.push_back(step.lists.across(first[e].low));
-  state_.cut.cut(std::move(across), domains);
+void OptimisticLoop::begin_step(const Step& step, std::size_t domains) {
+  const ShearingBox& box = step.context.box;
+  state_.cut.cut(domains, box.size_x / box.size_y, step.lists.offset_along());
   const std::size_t all = state_.cut.domains(), particles = step.context.particles.size();
   if (state_.domains.size() != all)
     state_.domains = std::vector<OptimisticDomain>(all);
@@ -63,21 +57,40 @@ void OptimisticLoop::begin_step(const Step& step, const std::vector<Event>& firs
   }
 }
 
-// Gives each event to the domain that owns both particles. Of other events, each of the two owners locks its particle
-// from then on.
+// Assigns each event to the domains that own its particles.
 void OptimisticLoop::assign(const Step& step, std::size_t round, std::span<const Event> events) {
-  OptimisticDomain* const domains = &state_.domains[state_.cut.begin_of(round)];
-  const auto owner = [&](std::uint32_t i) { return state_.cut.owner(round, step.lists.across(i)); };
-  for (const Event& event : events) {
-    const std::size_t low = owner(event.low), high = owner(event.high);
-    if (low == high) {
-      domains[low].assigned.push_back(event);
-      continue;
+  const std::size_t domains = state_.cut.end_of(round) - state_.cut.begin_of(round), none = domains;
+  std::vector<std::uint32_t> owners(2 * events.size()); // of the lower id; of the higher id if that is another domain
+  parallel_for(events.size(), [&](std::size_t e) {
+    const std::size_t low = owner(step, round, events[e].low), high = owner(step, round, events[e].high);
+    owners[2 * e] = static_cast<std::uint32_t>(low);
+    owners[2 * e + 1] = static_cast<std::uint32_t>(low == high ? none : high);
+  });
+  assigned_.resize(owners.size());
+  counting_sort(owners, domains + 1, assigned_begins_,
+                [&](std::size_t k, std::size_t position) { assigned_[position] = static_cast<std::uint32_t>(k / 2); });
+}
+
+// Returns the assigned events of which the domain owns both particles. Of others it locks its particle from then on.
+std::vector<Event> OptimisticLoop::own_events(const Step& step, std::size_t round, std::size_t number,
+                                              std::span<const Event> events) {
+  OptimisticDomain& domain = state_.domains[number];
+  const std::size_t own = number - state_.cut.begin_of(round);
+  std::vector<Event> both;
+  for (std::size_t k = assigned_begins_[own]; k < assigned_begins_[own + 1]; ++k) {
+    const Event& event = events[assigned_[k]];
+    const bool owns_low = owner(step, round, event.low) == own, owns_high = owner(step, round, event.high) == own;
+    if (owns_low && owns_high) {
+      both.push_back(event);
+    } else if (owns_low) {
+      domain.lock_schedule.add(event.time, event.low, event.low_count);
+      domain.deferred.push_back(event);
+    } else {
+      domain.lock_schedule.add(event.time, event.high, event.high_count);
     }
-    domains[low].lock_schedule.add(event.time, event.low, event.low_count);
-    domains[high].lock_schedule.add(event.time, event.high, event.high_count);
-    domains[low].cross_domain.push_back(event);
   }
+  domain.lock_schedule.sort();
+  return both;
 }
 
 void OptimisticLoop::run_round(const Step& step, std::size_t round, const std::vector<Event>& events) {
@@ -85,20 +98,20 @@ void OptimisticLoop::run_round(const Step& step, std::size_t round, const std::v
   assign(step, round, events);
   (round + 1 == DomainCut::rounds ? counts_.last_deferred : counts_.deferred) += round > 0 ? events.size() : 0;
   parallel_for(
-      end - begin, [&](std::size_t k) { run_domain(step, round, begin + k); }, 1);
+      end - begin, [&](std::size_t k) { run_domain(step, round, begin + k, events); }, 1);
   for (std::size_t d = begin; d < end; ++d)
     counts_.rolled_back += state_.domains[d].rolled_back;
 }
 
-void OptimisticLoop::run_domain(const Step& step, std::size_t round, std::size_t number) {
+void OptimisticLoop::run_domain(const Step& step, std::size_t round, std::size_t number,
+                                std::span<const Event> events) {
   OptimisticDomain& domain = state_.domains[number];
   const DomainScope scope(state_.cut, step.lists, round, number);
   DomainOrbits orbits(step.context, step.history, step.lists, state_, scope);
   try {
-    domain.lock_schedule.sort();
-    domain.events.assign(domain.assigned);
-    state_.log.reserve(number, 9 * domain.assigned.size() / 4);
-    ContactLoop loop(step.context, orbits, domain.events);
+    EventQueue queue;
+    queue.assign(own_events(step, round, number, events));
+    ContactLoop loop(step.context, orbits, queue);
     if (scope.is_last()) {
       std::vector<NewPath> unresolved;
       for (std::size_t d = 0; d < number; ++d)
@@ -117,49 +130,9 @@ std::vector<Event> OptimisticLoop::left_by(std::size_t round) const {
   std::vector<Event> left;
   for (std::size_t d = state_.cut.begin_of(round); d < state_.cut.end_of(round); ++d) {
     const OptimisticDomain& domain = state_.domains[d];
-    left.insert(left.end(), domain.cross_domain.begin(), domain.cross_domain.end());
     left.insert(left.end(), domain.deferred.begin(), domain.deferred.end());
   }
   return left;
-}
-
-// Merges the domains' sorted contacts by (time, ids). Returns false if contacts at one instant include one of a later
-// round.
-bool OptimisticLoop::merge_contacts(const Particles& particles) {
-  const std::size_t domains = state_.domains.size();
-  std::vector<std::size_t> next(domains);
-  std::vector<double> times; // of the next contacts
-  const auto advance_to = [&](std::size_t d, std::size_t contact) {
-    const DomainContacts& log = state_.domains[d].contacts;
-    next[d] = log.next_valid(contact);
-    return next[d] < log.size() ? log[next[d]].time : HUGE_VAL;
-  };
-  const auto ids_of = [&](std::size_t d) {
-    const Contact& contact = state_.domains[d].contacts[next[d]];
-    return std::pair(particles.ids[contact.low], particles.ids[contact.high]);
-  };
-  for (std::size_t d = 0; d < domains; ++d)
-    times.push_back(advance_to(d, 0));
-  order_.clear();
-  double last_time = -HUGE_VAL;
-  bool last_is_late = false; // a contact at that instant is not of the first round
-  for (;;) {
-    std::size_t first = 0;
-    for (std::size_t d = 1; d < domains; ++d)
-      if (times[d] < times[first] || (times[d] == times[first] && times[d] < HUGE_VAL && ids_of(d) < ids_of(first)))
-        first = d;
-    const double time = times[first];
-    if (time == HUGE_VAL)
-      return true;
-    assert(time >= last_time);
-    const bool is_late = first >= state_.cut.end_of(0);
-    if (time == last_time && (is_late || last_is_late))
-      return false;
-    last_time = time;
-    last_is_late = is_late;
-    order_.emplace_back(first, next[first]);
-    times[first] = advance_to(first, next[first] + 1);
-  }
 }
 
 // Restores everything as at the start of the step: the first change of each particle ended the path of then.
@@ -188,8 +161,9 @@ std::uint64_t OptimisticLoop::max_partners() const {
 }
 
 std::size_t OptimisticLoop::bytes() const {
-  std::size_t total = state_.log.bytes() + state_.locks.bytes() + order_.capacity() * sizeof(order_[0]) +
-                      state_.domains.capacity() * sizeof(OptimisticDomain);
+  std::size_t total = state_.log.bytes() + state_.locks.bytes() + order_.bytes() +
+                      state_.domains.capacity() * sizeof(OptimisticDomain) +
+                      (assigned_.capacity() + assigned_begins_.capacity()) * sizeof(std::uint32_t);
   for (const OptimisticDomain& domain : state_.domains)
     total += domain.bytes();
   return total;

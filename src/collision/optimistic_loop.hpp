@@ -1,11 +1,12 @@
-// The contacts of one step on several threads, in place, with the bits of the sequential order: optimistic parallel
-// simulation with rollback (Jefferson 1985; for hard spheres Lubachevsky 1992, Miller & Luding 2004).
+// The contacts of one step in domains, on several threads or one, in place, with the bits of the sequential order:
+// optimistic parallel simulation with rollback (Jefferson 1985; for hard spheres Lubachevsky 1992, Miller & Luding
+// 2004).
 //
-// Ownership: the box is cut across into domains, one per thread; each particle belongs to one. Deferral: a domain
-// carries out, in order, the contacts of which it owns both particles and all particles on their lists, which is all
-// that the search after the contact reads. It defers the others, and from then on all events of their two particles
-// (locks). A second round of domains, cut through the middles of the first ones, carries out what was deferred; a last
-// round, one domain for the whole box, carries out the rest.
+// Ownership: the box is cut into blocks, the domains; each particle belongs to one. Deferral: a domain carries out, in
+// order, the contacts of which it owns both particles and all particles on their lists, which is all that the search
+// after the contact reads. It defers the others, and from then on all events of their two particles (locks). A second
+// round of domains, shifted by half a block, carries out what was deferred; a last round, one domain for the whole box,
+// carries out the rest.
 //
 // Rollback (rollback.hpp): contacts of two domains of one round are independent, but a contact that was deferred may
 // precede and change one that was carried out. So each new path of a later round is searched against the paths that
@@ -24,12 +25,12 @@
 #pragma once
 
 #include "contact.hpp"
+#include "contact_order.hpp"
 #include "optimistic_domain.hpp"
 #include "step_context.hpp"
 
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace keeler::collision {
@@ -52,8 +53,11 @@ public:
 
   // The results of the last carry_out() that returned true.
 
-  /// Calls visit(contact, its record or nullptr) for each contact of the step, in the order of events.
-  template<class Visit> void visit_contacts(const Visit& visit) const;
+  /// Number of contacts of the step, which are in the order of events.
+  std::size_t contacts() const { return order_.size(); }
+  const Contact& contact(std::size_t k) const { return log_of(k)[order_[k].contact]; }
+  /// Returns nullptr if the step is not recorded.
+  const CollisionRecord* record(std::size_t k) const { return log_of(k).record(order_[k].contact); }
   /// Calls visit(end of the path, its elements, spin) for each change of a particle, the last one first.
   template<class Visit>
   void visit_changes(const StepHistory& history, std::uint32_t particle, const Visit& visit) const;
@@ -74,25 +78,25 @@ private:
     NeighbourLists& lists;
   };
 
-  void begin_step(const Step& step, const std::vector<Event>& first, std::size_t domains);
+  std::size_t owner(const Step& step, std::size_t round, std::uint32_t particle) const {
+    return state_.cut.owner(round, step.lists.position(particle));
+  }
+  void begin_step(const Step& step, std::size_t domains);
   void assign(const Step& step, std::size_t round, std::span<const Event> events);
   void run_round(const Step& step, std::size_t round, const std::vector<Event>& events);
-  void run_domain(const Step& step, std::size_t round, std::size_t domain);
+  std::vector<Event> own_events(const Step& step, std::size_t round, std::size_t domain, std::span<const Event> events);
+  void run_domain(const Step& step, std::size_t round, std::size_t domain, std::span<const Event> events);
   std::vector<Event> left_by(std::size_t round) const;
-  bool merge_contacts(const Particles& particles);
   bool roll_back_all(const Step& step);
 
+  const DomainContacts& log_of(std::size_t k) const { return state_.domains[order_[k].domain].contacts; }
+
   OptimisticState state_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> order_; // domain and index of each contact, in order of events
+  // of a round: indices of events, and where those of each domain begin
+  std::vector<std::uint32_t> assigned_, assigned_begins_;
+  ContactOrder order_;
   Counts counts_;
 };
-
-template<class Visit> void OptimisticLoop::visit_contacts(const Visit& visit) const {
-  for (const auto& [domain, contact] : order_) {
-    const DomainContacts& log = state_.domains[domain].contacts;
-    visit(log[contact], log.record(contact));
-  }
-}
 
 template<class Visit>
 void OptimisticLoop::visit_changes(const StepHistory& history, std::uint32_t particle, const Visit& visit) const {

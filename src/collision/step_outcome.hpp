@@ -28,6 +28,16 @@ struct StepOutcome {
     energy_lost = momentum_flux = azimuthal_gain = {};
     gave_up = 0;
   }
+  /// Appends later contacts of the step.
+  void append(const StepOutcome& later) {
+    dirty.insert(dirty.end(), later.dirty.begin(), later.dirty.end());
+    slow_pairs.insert(slow_pairs.end(), later.slow_pairs.begin(), later.slow_pairs.end());
+    records.insert(records.end(), later.records.begin(), later.records.end());
+    energy_lost += later.energy_lost;
+    momentum_flux += later.momentum_flux;
+    azimuthal_gain += later.azimuthal_gain;
+    gave_up += later.gave_up;
+  }
   void clear() {
     dirty.clear();
     clear_contacts();

@@ -14,6 +14,14 @@ namespace keeler::collision {
 /// The side of the box in the units of Line::x and Line::y.
 inline constexpr double full_turn = 4294967296.0; // 2³²
 
+/// A position in the box, from its lower corner, and distances in it, in units of 2⁻³² of its sides.
+struct BoxPosition {
+  std::uint32_t x, y;
+};
+struct BoxDistance {
+  std::uint64_t x, y;
+};
+
 /// Half a cache line.
 struct alignas(32) Line {
   std::int32_t x = 0, y = 0;
@@ -22,6 +30,11 @@ struct alignas(32) Line {
   /// image of it.
   std::uint32_t tag = 0;
 };
+
+inline BoxPosition position_of(const Line& line) {
+  constexpr std::uint32_t half = std::uint32_t{1} << 31;
+  return {static_cast<std::uint32_t>(line.x) + half, static_cast<std::uint32_t>(line.y) + half};
+}
 
 /// Conversion of box fractions to metres, the shear S, and the offset of images across the x edge as a box fraction.
 struct LineFrame {

@@ -121,11 +121,14 @@ bool LineCells::one_image(const Line& line) const {
   return (reach + std::max(reach, farthest)) * sheared < nearest_fraction * std::min(box_.size_x, box_.size_y);
 }
 
-std::uint64_t LineCells::farthest_across() const {
-  double reach = 0.0;
-  for (const Level& level : levels_)
-    reach = std::max(reach, level.reach_x);
-  return static_cast<std::uint64_t>(2.0 * reach * per_metre_x_) + 4;
+BoxDistance LineCells::farthest_neighbour() const {
+  double x = 0.0, y = 0.0;
+  for (const Level& level : levels_) {
+    x = std::max(x, level.reach_x);
+    y = std::max(y, level.reach_y + box_.shear * half_ * level.reach_x);
+  }
+  return {static_cast<std::uint64_t>(2.0 * x * per_metre_x_) + 4,
+          static_cast<std::uint64_t>(2.0 * y * per_metre_y_) + 4};
 }
 
 void LineCells::sort(std::span<const Line> lines, std::size_t cells) {

@@ -39,8 +39,8 @@ public:
   std::uint32_t particle(std::size_t slot) const { return lines_[slot].tag; }
   const Line& line(std::size_t particle) const { return lines_[slots_[particle]]; }
 
-  /// Upper bound on the distance across the box of two lines that may touch, as a fraction of the box (2⁻³²).
-  std::uint64_t farthest_across() const;
+  /// Upper bound on the distance of two lines that may touch, at their instant.
+  BoxDistance farthest_neighbour() const;
 
   /// Replaces the line of a particle, which keeps its slot.
   void replace(std::size_t particle, const Line& line);

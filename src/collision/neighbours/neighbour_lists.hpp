@@ -99,10 +99,12 @@ public:
   /// suffice for that either, reaches_far() holds on and only visit_everywhere() may be called.
   void rebuild_for_step();
 
-  /// Returns the position of a particle's reference path across the box, as a fraction of it (2⁻³²).
-  std::uint32_t across(std::size_t i) const { return references_.across(i); }
+  /// Returns the position of a particle's reference path, at the middle of the lists' lifetime.
+  BoxPosition position(std::size_t i) const { return references_.position(i); }
   /// Returns an upper bound on that distance between two particles on each other's list.
-  std::uint64_t farthest_across() const { return references_.cells().farthest_across(); }
+  BoxDistance farthest_neighbour() const { return references_.cells().farthest_neighbour(); }
+  /// Returns how far the shear has then moved images beyond the outer x edge along the box (2⁻³² of it).
+  std::uint32_t offset_along() const { return static_cast<std::uint32_t>(references_.cells().frame().offset_y); }
 
   Image nearest_image(const Body& a, const Body& b) const { return step().nearest_image(a, b); }
   Image nearest_image(std::size_t i, std::size_t j) const {

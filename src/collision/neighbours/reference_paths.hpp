@@ -40,10 +40,8 @@ public:
   const Line* lines() const { return lines_.data(); } ///< by particle; `size` is radius + skin + curvature
   const Line& line(std::size_t i) const { return lines_[i]; }
 
-  /// Returns the position of a reference path across the box, as a fraction of it (2⁻³²).
-  std::uint32_t across(std::size_t i) const {
-    return static_cast<std::uint32_t>(lines_[i].x) + (std::uint32_t{1} << 31);
-  }
+  /// Returns the position of a reference path at the middle of the lifetime.
+  BoxPosition position(std::size_t i) const { return position_of(lines_[i]); }
 
   void prefetch(std::size_t i) const { __builtin_prefetch(&lines_[i]); }
   void release() { cells_.release(); }

@@ -8,40 +8,70 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 namespace domains_test {
 
 using namespace keeler;
 using namespace keeler::collision;
 
-TEST_CASE("in each round every position belongs to the one domain whose strip contains it") {
+namespace {
+
+// The position at this displacement from another, through the edges of the box.
+BoxPosition displaced(const BoxPosition& from, std::int64_t x, std::int64_t y, std::uint32_t offset_y) {
+  const std::int64_t boxes = (std::int64_t{from.x} + x) >> 32; // outward
+  return {static_cast<std::uint32_t>(from.x + x), static_cast<std::uint32_t>(from.y + y + boxes * offset_y)};
+}
+
+} // namespace
+
+TEST_CASE(
+    "in each round every position has one owner, and blocks reach as far as is_inside() says, through all edges") {
   RandomStream random(1, RandomPurpose::sample, 0);
-  const auto position = [&] { return static_cast<std::uint32_t>(random.uniform() * 4294967296.0); };
-  for (const std::size_t domains : {2, 3, 8, 127}) {
-    CAPTURE(domains);
-    std::vector<std::uint32_t> samples;
-    for (std::size_t k = 0; k < 64 * domains; ++k)
-      samples.push_back(position() / 2); // half of the box is empty
-    DomainCut cut;
-    cut.cut(samples, domains);
-    CHECK(cut.domains() == 2 * domains + 1);
-    CHECK(cut.end_of(0) == cut.begin_of(1));
-    CHECK(cut.end_of(2) == cut.domains());
-    for (int k = 0; k < 200; ++k) {
-      const std::uint32_t x = position();
-      for (std::size_t round = 0; round < 2; ++round)
-        for (std::size_t d = cut.begin_of(round); d < cut.end_of(round); ++d) {
-          const DomainCut::Strip strip = cut.strip(d);
-          const std::uint32_t inside = x - strip.begin; // round the box
-          CHECK((inside < strip.width) == (cut.owner(round, x) == d - cut.begin_of(round)));
+  const auto position = [&] { return static_cast<std::uint32_t>(random.uniform() * full_turn); };
+  for (const double x_over_y : {0.1, 1.0, 3.0})
+    for (const std::size_t domains : {1, 2, 3, 8, 127, 2047}) {
+      CAPTURE(domains);
+      CAPTURE(x_over_y);
+      const std::uint32_t offset_y = position();
+      DomainCut cut;
+      cut.cut(domains, x_over_y, offset_y);
+      const std::size_t per_round = cut.end_of(0);
+      CHECK(per_round <= domains);
+      CHECK(4 * per_round > domains);
+      CHECK(cut.end_of(0) == cut.begin_of(1));
+      CHECK(cut.end_of(1) == 2 * per_round);
+      CHECK(cut.end_of(2) == cut.domains());
+      CHECK(cut.domains() == 2 * per_round + 1);
+      std::vector<std::size_t> counts(2 * per_round);
+      std::size_t inside = 0, only_second = 0;
+      const double reach = 0.1 * full_turn / static_cast<double>(per_round);
+      for (int k = 0; k < 20000; ++k) {
+        const BoxPosition place{position(), position()};
+        const BoxDistance distance{static_cast<std::uint64_t>(reach * random.uniform()),
+                                   static_cast<std::uint64_t>(reach * random.uniform())};
+        for (std::size_t round = 0; round < 2; ++round) {
+          const std::size_t owner = cut.owner(round, place);
+          REQUIRE(owner < per_round);
+          ++counts[cut.begin_of(round) + owner];
+          if (!cut.is_inside(round, place, distance))
+            continue;
+          ++inside;
+          only_second += round == 1 && !cut.is_inside(0, place, distance);
+          for (const int side_x : {-1, 0, 1})
+            for (const int side_y : {-1, 0, 1})
+              REQUIRE(cut.owner(round, displaced(place, side_x * static_cast<std::int64_t>(distance.x),
+                                                 side_y * static_cast<std::int64_t>(distance.y), offset_y)) == owner);
         }
-      CHECK(cut.owner(2, x) == 0);
+        CHECK(cut.owner(2, place) == 0);
+        CHECK(cut.is_inside(2, place, distance));
+      }
+      CHECK(inside > 20000); // of 40000
+      CHECK(only_second > 0);
+      const double mean = 20000.0 / static_cast<double>(per_round);
+      for (const std::size_t count : counts) // blocks are equal: within five standard errors
+        CHECK(std::fabs(static_cast<double>(count) - mean) < 5.0 * std::sqrt(mean) + 5.0);
     }
-    // borders of one round lie within the strips of the other
-    for (std::size_t d = 0; d < domains; ++d) {
-      const std::uint32_t border = cut.strip(d).begin;
-      CHECK(border != cut.strip(domains + cut.owner(1, border)).begin);
-    }
-  }
 }
 
 TEST_CASE("a change log restores orbits and spins, the last change first") {
