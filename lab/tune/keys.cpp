@@ -43,8 +43,8 @@ void add_kicks(std::vector<ChosenKey>& keys, const Tuning& tuning, const TuneSet
   const KickProbe& kicks = tuning.kicks[tuning.chosen_kicks];
   keys.push_back(
       {"gravity.kick_every", fmt::format("{}", tuning.steps[tuning.chosen_step].drifts),
-       fmt::format("with a kick every {:g} orbits {} of the contacts are unresolved; the loss exceeds the "
-                   "work of the shear by about {} (at most {}{})",
+       fmt::format("with a kick every {:g} orbits {} of the contacts are unresolved; the loss over the "
+                   "work of the shear errs by up to {} (at most {}{})",
                    kicks.interval, per_cent(kicks.unresolved), per_cent(kicks.physics_error()),
                    per_cent(settings.physics_error),
                    tuning.meets_physics_error ? "" : ", which no interval meets with a margin for other seeds")});

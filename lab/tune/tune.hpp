@@ -19,7 +19,7 @@ inline constexpr double margin_for_seeds = 0.8;
 
 struct TuneSettings {
   double force_error = 4e-3;         ///< largest rms error of the force
-  double physics_error = 0.01;       ///< largest excess of the energy loss over the work of the shear, relative
+  double physics_error = 0.01;       ///< largest relative error by kicks, of the loss over the work of the shear and of ν
   std::optional<double> orbits = {}; ///< age of the probed state; default 4, 8 without self-gravity
   int max_threads = 1;
   std::function<void(const Progress&)> progress = {}; ///< may be empty
@@ -31,8 +31,9 @@ struct KickProbe {
   double unresolved = 0.0;       ///< fraction of the contacts that are slower than a kick by the pair's mutual gravity
   double unresolved_error = 0.0; ///< standard error, from the scatter of the probed states
 
-  /// Returns the relative excess of the loss over the work, as measured in wakes (docs/dev/step.md).
-  double physics_error() const { return 1.25 * unresolved; }
+  /// Returns an upper limit of the relative error of the loss over the work and of ν, as measured in wakes and dense
+  /// patches (docs/dev/step.md).
+  double physics_error() const { return 0.1 * unresolved; }
 };
 
 /// Cost of a step with the chosen kick interval and solver.

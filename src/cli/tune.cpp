@@ -119,9 +119,9 @@ void print_text(const tune::Tuning& t) {
     print("{:<8}{:<22}{:>14.1e}{:>18.0f}{}\n", t.gravity[k].choice.solver, t.gravity[k].choice.text,
           t.gravity[k].errors.rms, t.gravity[k].ns_per_particle, mark(k == t.chosen_gravity));
   if (!t.kicks.empty())
-    print("\n{:<22}{:>22}{:>18}\n", "kick interval, orbits", "unresolved contacts", "excess loss");
+    print("\n{:<22}{:>22}{:>18}\n", "kick interval, orbits", "unresolved contacts", "error of the loss");
   for (std::size_t k = 0; k < t.kicks.size(); ++k)
-    print("{:<22g}{:>22}{:>+16.2g} %{}\n", t.kicks[k].interval,
+    print("{:<22g}{:>22}{:>16.2g} %{}\n", t.kicks[k].interval,
           fmt::format("{:.2g} +- {:.1g} %", 100.0 * t.kicks[k].unresolved, 100.0 * t.kicks[k].unresolved_error),
           100.0 * t.kicks[k].physics_error(), mark(k == t.chosen_kicks));
   print("\n{:<16}{:>16}{:>28}{:>28}\n", "step, orbits", "drifts per kick", "contacts/(particle drift)",
@@ -199,7 +199,7 @@ void add_tune(CLI::App& program, Action& action) {
       ->check(number_between(1e-5, 0.1, "a force error"));
   command
       .add_option("--physics-error", options->physics_error,
-                  "largest excess of the energy loss by kicks, instead of the quality's")
+                  "largest error of the energy loss by kicks, instead of the quality's")
       ->check(number_between(1e-4, 0.5, "a physics error"));
   command
       .add_option("--orbits", options->settings.orbits,

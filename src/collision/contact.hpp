@@ -8,9 +8,9 @@ namespace keeler::collision {
 /// Energies in kg m² rad⁻².
 struct Contact {
   double time = 0.0;
-  double normal_speed = 0.0; ///< of the approach, m rad⁻¹
   double energy_lost = 0.0;
   double momentum_flux = 0.0;      ///< kg m² rad⁻¹
+  double kick_work = 0.0;          ///< gravity's, beyond that of its kicks
   double azimuthal_gain = 0.0;     ///< of Σ m c_y², kg m² rad⁻²
   bool fast = false;               ///< faster than v_cut
   bool unresolved = false;         ///< slower than what a kick of the pair's own gravity gives

@@ -8,6 +8,7 @@
 
 #include "ablation.hpp"
 #include "contact.hpp"
+#include "contact_law.hpp"
 #include "step_context.hpp"
 
 #include <keeler/collision/events.hpp>
@@ -147,12 +148,15 @@ private:
       if (stage == 0) {
         __builtin_prefetch(&step_.particles.bodies[i]);
         __builtin_prefetch(&step_.particles.ids[i]);
+        if (!step_.gravity.accelerations.empty())
+          __builtin_prefetch(&step_.gravity.accelerations[i]);
       }
       orbits_.prefetch(i, stage);
     }
   }
 
-  // Carries out a contact: the impulse along the line of centres turns the normal approach speed into the rebound's.
+  // Carries out a contact: the impulse along the line of centres turns the normal approach speed into the rebound's
+  // (contact_law.hpp).
   void carry_out(const Event& event) {
     assert(step_.particles.ids[event.low] < step_.particles.ids[event.high]);
     const Frequencies& f = step_.frequencies;
@@ -163,17 +167,19 @@ private:
     const Vec3 normal = relative.position.normalized();
     Contact contact;
     contact.time = event.time;
-    const double speed = contact.normal_speed = -relative.velocity.dot(normal);
-    const Rebound after = rebound(step_.settings, speed, a.radius, b.radius, step_.orbital_frequency);
-    if (!(speed > -after.speed))
-      return; // an inexact finder may call a pair that moves apart
+    const ContactLaw law =
+        contact_law(step_.settings, step_.gravity, step_.orbital_frequency,
+                    {event.low, event.high, a.radius, b.radius}, relative.velocity, normal, event.time);
+    if (!law.acts())
+      return;
+    const double speed = law.approach, speed_after = law.rebound.speed;
     const Vec3 point = step_.recorded() ? contact_point(a, normal, rotation) : Vec3::Zero();
     const double reduced_mass = a.mass * b.mass / (a.mass + b.mass);
-    const double normal_impulse = reduced_mass * (speed + after.speed);
+    const double normal_impulse = reduced_mass * (speed + speed_after);
     Vec3 impulse = normal_impulse * normal; // on b; a gets the opposite
     Spins spins;
     if (step_.settings.friction) {
-      const Sliding sliding = apply_friction(event, {a, b, normal, relative.velocity, {}, {}}, normal_impulse, spins);
+      const Sliding sliding = apply_friction(event, {a, b, normal, law.velocity, {}, {}}, normal_impulse, spins);
       impulse += sliding.impulse;
       contact.energy_lost = sliding.energy_lost;
     }
@@ -183,7 +189,7 @@ private:
     kick(b.elements, impulse / b.mass, f, rotation);
 
     const double distance = a.radius + b.radius;
-    contact.fast = after.fast;
+    contact.fast = law.rebound.fast;
     contact.unresolved = speed * distance * distance < step_.kick_pull * (a.mass + b.mass);
     if (speed * distance * distance < step_.rest_pull * (a.mass + b.mass))
       contact.slow = static_cast<float>(speed * distance * distance / (step_.kick_pull * (a.mass + b.mass)));
@@ -191,7 +197,10 @@ private:
     contact.high = event.high;
     contact.recontact = orbits_.last_change(event.low) > step_.begin &&
                         orbits_.last_change(event.low) == orbits_.last_change(event.high);
-    contact.energy_lost += 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
+    contact.kick_work = -impulse.dot(law.lag);
+    contact.energy_lost += 0.5 * reduced_mass * (speed * speed - speed_after * speed_after);
+    if (!law.resolved) // the loss of the drift's energy, and the part of it that the kicks have put there
+      contact.energy_lost += contact.kick_work;
     contact.momentum_flux = relative.position.x() * impulse.y();
     orbits_.add(contact);
     if (step_.recorded())
@@ -201,7 +210,7 @@ private:
                                   .image = event.image,
                                   .normal_speed = speed,
                                   .fast = contact.fast,
-                                  .tangential_speed = (relative.velocity + speed * normal).norm(),
+                                  .tangential_speed = (law.velocity + speed * normal).norm(),
                                   .energy_lost = contact.energy_lost,
                                   .radius_sum = distance,
                                   .contact_point = point});

@@ -50,7 +50,7 @@ bool ContactOrder::sort(std::span<const OptimisticDomain> domains, std::size_t f
   for (const Turns& turns : of_domain_)
     count += turns.size();
   all_.resize(count);
-  const std::size_t slices = 1 + count / contacts_per_slice;
+  const std::size_t slices = 1 + count / std::max(contacts_per_slice, 8 * domains.size());
   const auto begin_in = [&](const Turns& turns, std::size_t slice) {
     const double part = static_cast<double>(slice) / static_cast<double>(slices);
     const double from = step.begin + (step.end() - step.begin) * part;

@@ -123,7 +123,8 @@ public:
     });
     if (step_.record_taker)
       gather_records();
-    ranks_.merge({&outcome_.energy_lost, &outcome_.momentum_flux, &outcome_.azimuthal_gain});
+    ranks_.merge(
+        {&outcome_.energy_lost, &outcome_.momentum_flux, &outcome_.azimuthal_gain, &outcome_.kick_work});
     outcome_.add_sums_to(tally);
     std::uint64_t counts[] = {tally_.fast, tally_.slow, tally_.unresolved};
     ranks_.sum(counts);
@@ -202,10 +203,10 @@ private:
 
 bool DriftEngine::collide_distributed(Particles& particles, const decomposition::GhostLayer& ghosts,
                                       const Communicator& ranks, const ShearingBox& box, double offset,
-                                      CollisionTally& tally) {
+                                      CollisionTally& tally, const KickInterval& gravity) {
   assert(finder().exact() && !(observer_ && observer_->wants_events()) && !audit_);
   assert(ghosts.own <= particles.size() && ghosts.own + ghosts.near.size() == particles.size());
-  const StepContext step = context_of(particles, box, offset);
+  const StepContext step = context_of(particles, box, offset, gravity);
   std::vector<Event> first;
   ranks.together([&] {
     begin_step(step, false);

@@ -25,8 +25,8 @@ public:
   /// across the outer x edge are moved by `offset_y` along the box. Precondition: 0 < domains <= max_domains.
   void cut(std::size_t domains, double x_over_y, std::uint32_t offset_y) {
     assert(domains > 0 && domains <= max_domains && x_over_y > 0.0);
-    const double columns = std::rint(std::sqrt(static_cast<double>(domains) * x_over_y));
-    columns_ = static_cast<std::uint32_t>(std::clamp(columns, 1.0, static_cast<double>(domains)));
+    const double square = std::sqrt(static_cast<double>(domains) * x_over_y); // columns of square blocks
+    columns_ = static_cast<std::uint32_t>(std::clamp(std::rint(square), 1.0, static_cast<double>(domains)));
     rows_ = static_cast<std::uint32_t>(domains / columns_);
     offset_y_ = offset_y;
   }

@@ -32,14 +32,18 @@ std::span<const SlowPair> DriftPhase::slow_pairs() const {
 }
 
 void DriftPhase::collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally,
-                         bool undisturbed) {
-  engine_->collide(particles, box, offset, tally, undisturbed);
+                         bool undisturbed, const KickInterval& gravity) {
+  engine_->collide(particles, box, offset, tally, undisturbed, gravity);
 }
 
 bool DriftPhase::collide_distributed(Particles& particles, const decomposition::GhostLayer& ghosts,
                                      const Communicator& ranks, const ShearingBox& box, double offset,
-                                     CollisionTally& tally) {
-  return engine_->collide_distributed(particles, ghosts, ranks, box, offset, tally);
+                                     CollisionTally& tally, const KickInterval& gravity) {
+  return engine_->collide_distributed(particles, ghosts, ranks, box, offset, tally, gravity);
+}
+
+double DriftPhase::kick_work() const {
+  return engine_->kick_work();
 }
 
 const finders::Finder& DriftPhase::finder() const {

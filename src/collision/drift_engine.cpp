@@ -30,12 +30,14 @@ std::unique_ptr<finders::Finder> finder_named(const std::string& name) {
   return finders::make_finder(name);
 }
 
-// Returns the number of domains that carries out contacts fastest: one per thread; and more where contacts are so many,
-// and particles too, that it pays to have what a domain touches in the cache of a processor.
+// Returns the number of domains that carries out contacts fastest: three per thread, since blocks have different
+// numbers of contacts and some threads would wait; and more where contacts are so many, and particles too, that it pays
+// to have what a domain touches in the cache of a processor.
 std::size_t domains_that_pay(std::size_t particles, std::size_t first_contacts) {
   constexpr std::size_t min_contacts = 50, in_cache = 2500; // of a domain
   const bool crowded = particles >= 16 * in_cache && first_contacts >= particles / 25;
-  const std::size_t domains = std::max(static_cast<std::size_t>(threads()), crowded ? particles / in_cache : 1);
+  const auto several = static_cast<std::size_t>(threads());
+  const std::size_t domains = std::max(several > 1 ? 3 * several : 1, crowded ? particles / in_cache : 1);
   return std::min(domains, first_contacts / min_contacts);
 }
 
@@ -112,8 +114,8 @@ void DriftEngine::set_step(double step, double kick_pull, double rest_pull) {
 }
 
 void DriftEngine::collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally,
-                          bool undisturbed) {
-  const StepContext step = context_of(particles, box, offset);
+                          bool undisturbed, const KickInterval& gravity) {
+  const StepContext step = context_of(particles, box, offset, gravity);
   begin_step(step, undisturbed);
   if (audit_)
     audit_begin(*audit_, step, finder_step_.straight_line, candidates_);
@@ -132,7 +134,9 @@ void DriftEngine::collide(Particles& particles, const ShearingBox& box, double o
   end_step(step);
 }
 
-StepContext DriftEngine::context_of(Particles& particles, const ShearingBox& box, double offset) const {
+StepContext DriftEngine::context_of(Particles& particles, const ShearingBox& box, double offset,
+                                    const KickInterval& gravity) const {
+  assert(gravity.accelerations.empty() || gravity.accelerations.size() == particles.size());
   assert(particles.ids.size() == particles.size() && (!particles.rough || particles.spins.size() == particles.size()));
   return {.particles = particles,
           .settings = settings_,
@@ -144,6 +148,7 @@ StepContext DriftEngine::context_of(Particles& particles, const ShearingBox& box
           .begin = -0.5 * schedule_.step,
           .kick_pull = schedule_.kick_pull,
           .rest_pull = schedule_.rest_pull,
+          .gravity = gravity,
           .watcher = observer_ && observer_->wants_events() ? observer_ : nullptr,
           .record_taker = observer_ && observer_->wants_records() ? observer_ : nullptr};
 }
@@ -277,7 +282,8 @@ DriftCosts DriftEngine::costs() const {
 
 std::size_t DriftEngine::bytes(const StepContext& step) const {
   const Particles& particles = step.particles;
-  std::size_t total = particles.bodies.capacity() * sizeof(Body) + particles.ids.capacity() * sizeof(std::uint64_t);
+  std::size_t total =
+      sizeof(*this) + particles.bodies.capacity() * sizeof(Body) + particles.ids.capacity() * sizeof(std::uint64_t);
   total += broad_phase_.lists().bytes() + optimistic_.bytes() + events_.bytes() + history_.bytes();
   total += outcome_.dirty.capacity() * sizeof(std::uint32_t);
   total += particles.size() * step.finder.bytes_per_particle();

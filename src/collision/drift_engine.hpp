@@ -29,9 +29,10 @@ public:
   DriftEngine(const DriftEngine&) = delete;
   DriftEngine& operator=(const DriftEngine&) = delete;
 
-  void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally, bool undisturbed);
+  void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally, bool undisturbed,
+               const KickInterval& gravity);
   bool collide_distributed(Particles& particles, const decomposition::GhostLayer& ghosts, const Communicator& ranks,
-                           const ShearingBox& box, double offset, CollisionTally& tally);
+                           const ShearingBox& box, double offset, CollisionTally& tally, const KickInterval& gravity);
   DriftCosts costs() const;
 
   finders::Finder& finder() const {
@@ -41,6 +42,7 @@ public:
   void release() { broad_phase_.lists().release(); }
   void set_step(double step, double kick_pull, double rest_pull);
   std::span<const SlowPair> slow_pairs() const { return outcome_.slow_pairs; }
+  double kick_work() const { return outcome_.kick_work.value(); }
   void observe(DriftObserver* observer) { observer_ = observer; }
   void audit(NeighbourAudit* audit) { audit_ = audit; }
   double reached() const;
@@ -51,7 +53,8 @@ private:
     double step, kick_pull = 0.0, rest_pull = 0.0;
   };
 
-  StepContext context_of(Particles& particles, const ShearingBox& box, double offset) const;
+  StepContext context_of(Particles& particles, const ShearingBox& box, double offset,
+                         const KickInterval& gravity) const;
   void begin_step(const StepContext& step, bool undisturbed);
   void find_candidates(const StepContext& step);
   std::vector<Event> solve(const StepContext& step);

@@ -200,10 +200,10 @@ const std::vector<RestitutionEntry>& restitution_laws() {
 Rebound rebound(const CollisionSettings& settings, double approach_speed, double radius_low, double radius_high,
                 double orbital_frequency) {
   assert(radius_low > 0.0 && radius_high > 0.0 && orbital_frequency > 0.0);
-  const double cut = settings.cut_speed(radius_low + radius_high);
-  const bool fast = approach_speed >= cut;
+  const double radius_sum = radius_low + radius_high;
+  const bool fast = approach_speed >= settings.cut_speed(radius_sum);
   const double kept = fast ? settings.restitution({approach_speed * orbital_frequency, radius_low, radius_high}) : 1.0;
-  return {std::max(kept * approach_speed, 1e-3 * cut), fast};
+  return {std::max(kept * approach_speed, settings.min_rebound(radius_sum)), fast};
 }
 
 } // namespace keeler::collision

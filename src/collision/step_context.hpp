@@ -21,6 +21,7 @@ struct StepContext {
   double begin;     ///< −h/2: rad from the epoch
   double kick_pull; ///< G times the kick interval, m³ kg⁻¹ rad⁻¹: slower contacts are unresolved
   double rest_pull; ///< likewise, for DriftPhase::slow_pairs()
+  KickInterval gravity;
 
   DriftObserver* watcher;      ///< sees each search, contact and change; nullptr: none
   DriftObserver* record_taker; ///< receives all records at the end of the step; nullptr: none

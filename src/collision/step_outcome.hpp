@@ -18,14 +18,14 @@ struct StepOutcome {
   std::vector<std::uint32_t> dirty;     ///< particles that were hit; more than once after rollbacks
   std::vector<SlowPair> slow_pairs;     ///< in the order of events
   std::vector<CollisionRecord> records; ///< for an observer that wants them
-  ExactSum energy_lost, momentum_flux, azimuthal_gain;
+  ExactSum energy_lost, momentum_flux, azimuthal_gain, kick_work;
   std::uint64_t gave_up = 0; ///< searches
 
   /// Forgets the contacts; particles that were hit stay dirty.
   void clear_contacts() {
     slow_pairs.clear();
     records.clear();
-    energy_lost = momentum_flux = azimuthal_gain = {};
+    energy_lost = momentum_flux = azimuthal_gain = kick_work = {};
     gave_up = 0;
   }
   /// Appends later contacts of the step.
@@ -36,6 +36,7 @@ struct StepOutcome {
     energy_lost += later.energy_lost;
     momentum_flux += later.momentum_flux;
     azimuthal_gain += later.azimuthal_gain;
+    kick_work += later.kick_work;
     gave_up += later.gave_up;
   }
   void clear() {
@@ -69,6 +70,7 @@ struct ContactCounter {
     outcome.energy_lost += contact.energy_lost;
     outcome.momentum_flux += contact.momentum_flux;
     outcome.azimuthal_gain += contact.azimuthal_gain;
+    outcome.kick_work += contact.kick_work;
     ++costs.contacts;
     costs.recontacts += contact.recontact;
     if (contact.slow > 0.0F)

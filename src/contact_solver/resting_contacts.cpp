@@ -64,7 +64,8 @@ void RestingContacts::persist(RestingState& state, const RestingStep& step,
     work_.reset();
 }
 
-void RestingContacts::persist_second_half(RestingState& state, const RestingStep& step, CollisionTally& tally) {
+void RestingContacts::persist_second_half(RestingState& state, const RestingStep& step, CollisionTally& tally,
+                                          std::span<std::uint8_t> at_rest) {
   if (state.pairs.empty())
     return;
   assert(state.pairs.size() == state.loads.size() && step.interval > 0.0);
@@ -81,6 +82,8 @@ void RestingContacts::persist_second_half(RestingState& state, const RestingStep
     w.velocity_changes[low] -= w.inverse_masses[low] * impulse;
     w.velocity_changes[high] += w.inverse_masses[high] * impulse;
   }
+  for (std::size_t m = 0; m < w.members.size(); ++m)
+    at_rest[w.members[m].index] = w.velocity_changes[m] != Vec3::Zero();
   w.distribute(state, step, w.kicks_after, true, tally);
 }
 

@@ -62,8 +62,10 @@ public:
   void persist(RestingState& state, const RestingStep& step, const std::optional<collision::Friction>& friction,
                CollisionTally& tally);
 
-  /// Applies the second half. Precondition: the half kicks that begin the next interval have been applied.
-  void persist_second_half(RestingState& state, const RestingStep& step, CollisionTally& tally);
+  /// Applies the second half, and marks the particles that impulses act on in `at_rest` (by particle). Precondition:
+  /// the half kicks that begin the next interval have been applied.
+  void persist_second_half(RestingState& state, const RestingStep& step, CollisionTally& tally,
+                           std::span<std::uint8_t> at_rest);
 
   /// Tells that the particles' order in memory has changed.
   void reordered() { indices_known_ = false; }

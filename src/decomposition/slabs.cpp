@@ -277,6 +277,18 @@ void Slabs::add_ghosts(Particles& particles) {
   assert(particles.spins.size() == particles.bodies.size());
 }
 
+void Slabs::add_ghosts(std::vector<Vec3>& row) const {
+  assert(is_built_ && row.size() == ghosts_.own);
+  std::vector<std::vector<Vec3>> sent(ranks_.size());
+  for (std::size_t rank = 0; rank < ranks_.size(); ++rank)
+    for (const std::uint32_t k : ghosts_.sent[rank])
+      sent[rank].push_back(row[k]);
+  row.reserve(ghosts_.own + ghosts_.ghosts());
+  for (const std::vector<Vec3>& from_rank : ranks_.exchange(sent))
+    row.insert(row.end(), from_rank.begin(), from_rank.end());
+  assert(row.size() == ghosts_.own + ghosts_.ghosts());
+}
+
 void Slabs::remove_ghosts(Particles& particles) const {
   assert(particles.size() >= ghosts_.own);
   particles.bodies.resize(ghosts_.own);

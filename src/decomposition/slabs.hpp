@@ -57,8 +57,13 @@ public:
   /// Appends the ghosts, in their owners' present state, to the own particles. Collective. Precondition: the ghost
   /// layer is valid and `particles` has own particles only.
   void add_ghosts(Particles& particles);
+  /// Appends a row's values for the ghosts to those of the own particles. Collective. Precondition: the ghost layer is
+  /// valid and the row has own particles only.
+  void add_ghosts(std::vector<Vec3>& row) const;
   /// Removes the ghosts from the store.
   void remove_ghosts(Particles& particles) const;
+  /// Removes the ghosts from a row.
+  void remove_ghosts(std::vector<Vec3>& row) const { row.resize(ghosts_.own); }
 
   const GhostLayer& ghosts() const { return ghosts_; }
   std::uint64_t rebuilds() const { return rebuilds_; }

@@ -12,7 +12,7 @@ struct Quality {
   double force_error;   ///< rms error of the force, for fft and auto
   double opening_angle; ///< for the tree
   double kick_interval; ///< orbits, for r_h up to 0.94; above it decreases as r_h⁻³
-  double physics_error; ///< excess of the loss over the work of the shear, due to contacts that kicks make
+  double physics_error; ///< relative error of the loss over the work of the shear, by contacts that kicks make
 };
 
 /// The quality of a scene without the key.

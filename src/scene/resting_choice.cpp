@@ -13,9 +13,9 @@ namespace keeler::scene {
 namespace {
 
 constexpr double aggregates_last = 1.0;     // r_h
-constexpr double allowed_excess = 0.015;    // half the accuracy of an energy balance (docs/hard-spheres.md)
+constexpr double allowed_excess = 0.015;    // of what kicks give to contacts (docs/hard-spheres.md)
 constexpr double much_larger = 3.0;         // radius of a body over that of its grains
-constexpr double automatic_interval = 4e-3; // orbits: typical of an automatic step in wakes
+constexpr double automatic_interval = 8e-3; // orbits: typical of an automatic step in wakes
 constexpr double min_mass_fraction = 0.001; // of the patch, in a body that must hold grains to matter
 
 // Returns the Hill radius of two bodies over their radius sum, by equal spheres of the density below.
@@ -48,7 +48,7 @@ RestingChoice choose_resting_contacts(const PatchScale& patch, const Scene& scen
   const double interval =
       scene.time.automatic ? automatic_interval : scene.time.step * static_cast<double>(scene.kick_interval());
   const double excess = excess_of_bouncing(patch.optical_depth, r_h, interval);
-  return {excess >= allowed_excess, fmt::format("bouncing loses about {} % more energy than the shear supplies",
+  return {excess >= allowed_excess, fmt::format("kicks give bouncing contacts about {} % of the energy that the shear supplies",
                                                 format_number(100.0 * excess, 2))};
 }
 

@@ -80,9 +80,13 @@ void Simulation::collide_distributed() {
   for (;;) {
     require_ghost_layer();
     slabs_->add_ghosts(state_.particles);
-    const bool done =
-        drift_.collide_distributed(state_.particles, slabs_->ghosts(), ranks_, state_.box, offset, state_.collisions);
+    if (scene_.gravity)
+      slabs_->add_ghosts(state_.forces.front().accelerations);
+    const bool done = drift_.collide_distributed(state_.particles, slabs_->ghosts(), ranks_, state_.box, offset,
+                                                 state_.collisions, kicks_of_drift());
     slabs_->remove_ghosts(state_.particles);
+    if (scene_.gravity)
+      slabs_->remove_ghosts(state_.forces.front().accelerations);
     if (done)
       return;
     slabs_->widen();

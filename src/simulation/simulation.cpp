@@ -106,6 +106,8 @@ void Simulation::advance() {
     drifting_ = true;
     collide();
     drifting_ = false;
+    if (scene_.gravity) // the first of the forces
+      state_.forces.front().work += drift_.kick_work();
     note_slow_pairs();
     advance_epoch();
     undisturbed_ = true;
@@ -123,7 +125,16 @@ void Simulation::advance() {
 void Simulation::collide() {
   if (ranks_.distributed())
     return collide_distributed();
-  drift_.collide(state_.particles, state_.box, state_.epoch_offset(), state_.collisions, undisturbed_);
+  drift_.collide(state_.particles, state_.box, state_.epoch_offset(), state_.collisions, undisturbed_, kicks_of_drift());
+}
+
+// Returns the interval between kicks of self-gravity that the next drift is a part of.
+collision::KickInterval Simulation::kicks_of_drift() const {
+  if (!scene_.gravity)
+    return {};
+  const std::int64_t interval = ticks_between_kicks(0), since = state_.step % interval; // ticks
+  return {state_.forces.front().accelerations,
+          0.5 * static_cast<double>(interval - 2 * since - state_.control.step) * state_.tick(), at_rest_};
 }
 
 // Chooses the lengths of the next steps, at ticks where the kicks of all forces coincide. Moves the elements to the
@@ -181,10 +192,14 @@ void Simulation::persist_contacts(double before) {
 }
 
 void Simulation::persist_contacts_second_half() {
-  if (state_.resting.pairs.empty() || !kick_due(0))
+  if (!carries() || !kick_due(0))
     return;
+  at_rest_.clear();
+  if (state_.resting.pairs.empty())
+    return;
+  at_rest_.assign(state_.particles.size(), 0);
   with_kicks(kick_interval(), [&](const contact_solver::RestingStep& step) {
-    resting_->persist_second_half(state_.resting, step, state_.collisions);
+    resting_->persist_second_half(state_.resting, step, state_.collisions, at_rest_);
   });
 }
 
@@ -208,6 +223,8 @@ void Simulation::sort_when_due() {
     cells::reorder(state_.particles.spins, order);
   for (ForceState& force : state_.forces)
     cells::reorder(force.accelerations, order);
+  if (!at_rest_.empty())
+    cells::reorder(at_rest_, order);
   resting_->reordered();
   find_moonlets();
 }

@@ -37,8 +37,8 @@ grep -q "gravity" "$work/out" && fail "gravity in a scene that has none: $(cat "
 
 refuses "a file that exists" "exists already" tune "$scene" -o "$work/tuned.toml"
 refuses "a folder" "is a folder" tune "$scene" -o "$work"
-runs 0 tune "$scene" --orbits 0.2 --threads 1 -o "$work/new.toml" --set time.end=1.25
-grep -q '^end = 1.25' "$work/new.toml" || fail "the file lacks an override: $(cat "$work/new.toml")"
+runs 0 tune "$scene" --orbits 0.2 --threads 1 -o "$work/new.toml" --set time.end=1.2
+grep -q '^end = 1.2$' "$work/new.toml" || fail "the file lacks an override: $(cat "$work/new.toml")"
 refuses "no such quality" "best" tune "$scene" --quality best
 refuses "a force error out of range" "is not a force error" tune "$scene" --force-error 2
 refuses "no scene" "cannot be read" tune "$work/absent.toml"

@@ -85,7 +85,7 @@ FAULTS = [
           "collision", "collisions keep the sums that mechanics keeps, and lose the energy that they book"),
     Fault("energy-book", "the energy lost in a contact is booked as if it did not rebound",
           "src/collision/contact_loop.hpp",
-          "(speed * speed - after.speed * after.speed);", "(speed * speed - 0.0 * after.speed);",
+          "(speed * speed - speed_after * speed_after);", "(speed * speed - 0.0 * speed_after);",
           "collision", "collisions keep the sums that mechanics keeps, and lose the energy that they book"),
     Fault("rolling", "the effective mass of friction is 2/5 in place of 2/7",
           "src/collision/friction.cpp",

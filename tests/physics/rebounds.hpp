@@ -1,10 +1,10 @@
 // Two spheres that fall on each other along z: how far the speed of their rebound is off when gravity acts in kicks.
 //
 // Between two kicks the spheres approach at the exact speed of the middle of the interval. A contact at a time δ after
-// that middle therefore comes g δ too slowly, g the relative acceleration there, and ε g δ of this is left after the
-// bounce. The kick that ends the interval then takes g h/2 from the rebound, where gravity had only h/2 − δ to act: g δ
-// too much. So the rebound is (1 + ε) g δ too slow. Over contacts at any time of the interval, |δ| < h/2, that has the
-// mean 0 and the rms (1 + ε) g h/√12: first order in h. The place of the contact errs in second order only.
+// that middle comes g δ too slowly, g the relative acceleration there. A rebound from that speed errs by (1 + ε) g δ:
+// ε g δ is left after the bounce, and the kick that ends the interval takes g h/2 where gravity had only h/2 − δ to
+// act. Over contacts at any time of the interval that has the rms (1 + ε) g h/√12. Contacts with the speed of their own
+// time err by h² only, as their place does (src/collision/contact_law.hpp).
 #pragma once
 
 #include <keeler/core/threads.hpp>
@@ -21,7 +21,7 @@ namespace keeler::test {
 /// Of speeds at the instant of the rebound, in r Ω for r = 1 m.
 struct ReboundErrors {
   double rms = 0.0, mean = 0.0;
-  double law = 0.0; ///< (1 + ε) g h/√12
+  double of_drift = 0.0; ///< (1 + ε) g h/√12: the rms of rebounds from the speed of the drift
 };
 
 /// Of pairs of spheres of 1 m and 900 kg/m³ that start at rest, 3 to 4 m apart. `kick_interval` is in orbits, of
@@ -41,7 +41,7 @@ time = {{ step = {:.17g}, end = 10.0 }}
                                               omega, restitution, kick_every, kick_interval / kick_every),
                                   "two spheres");
   ReboundErrors errors;
-  errors.law = (1.0 + restitution) * attraction / (contact * contact) * two_pi * kick_interval / std::sqrt(12.0);
+  errors.of_drift = (1.0 + restitution) * attraction / (contact * contact) * two_pi * kick_interval / std::sqrt(12.0);
   const int threads_before = threads();
   set_threads(1); // two particles
   for (int k = 0; k < pairs; ++k) {

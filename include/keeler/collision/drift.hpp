@@ -54,16 +54,25 @@ inline double epicyclic_gain(const CollisionTally& tally, const Frequencies& f) 
   return shear * tally.momentum_flux + shear / (f.kappa * f.kappa) * tally.azimuthal_gain - tally.energy_lost;
 }
 
+/// The interval between two kicks of self-gravity that a drift is a part of. Velocities of the drift are those of its
+/// middle; contacts need those of their own time (docs/theory/README.md).
+struct KickInterval {
+  std::span<const Vec3> accelerations; ///< of the kick at its begin, by particle, m rad⁻²; empty: no gravity
+  double middle = 0.0;                 ///< rad from the epoch
+  /// By particle: does it rest on another one? Its velocity in the drift is the true one. Empty: none does.
+  std::span<const std::uint8_t> at_rest = {};
+};
+
 /// One collision.
 struct CollisionRecord {
   double time;                       ///< relative to the middle of the step, rad
   std::uint64_t low_id;              ///< the lower id
   std::uint64_t high_id;             ///< the higher id
   Image image;                       ///< of the particle with the higher id
-  double normal_speed;               ///< approach speed, m rad⁻¹
+  double normal_speed;               ///< approach speed that its rebound follows from, m rad⁻¹
   bool fast;                         ///< faster than v_cut
   double tangential_speed = 0.0;     ///< of the centres before the contact, in the rotating frame, m rad⁻¹
-  double energy_lost = 0.0;          ///< kg m² rad⁻²
+  double energy_lost = 0.0;          ///< kg m² rad⁻²; of a contact that kicks do not resolve, of either sign
   double radius_sum = 0.0;           ///< m
   Vec3 contact_point = Vec3::Zero(); ///< on the surface of the particle with the lower id, as that is stored, m
 };
@@ -75,7 +84,7 @@ public:
 
   /// True: the finder gets all pairs that the cells of a grid hold, without rejection of any first.
   virtual bool wants_every_candidate() const { return false; }
-  /// Returns the number of domains for contacts on several threads, wherever that is allowed; 0: as many as pay.
+  /// Returns the number of domains for contacts, wherever that is allowed; 0: as many as pay.
   virtual std::size_t wants_domains() const { return 0; }
   /// Returns a finder in place of the settings' one, or nullptr. Constant within a step.
   virtual finders::Finder* replacement_finder() { return nullptr; }
@@ -114,6 +123,10 @@ public:
   /// order of events; a pair may be there more than once.
   std::span<const SlowPair> slow_pairs() const;
 
+  /// Returns gravity's work in the last step on the velocities that contacts changed, beyond what its kicks do
+  /// (kg m² rad⁻²).
+  double kick_work() const;
+
   ~DriftPhase();
   DriftPhase(DriftPhase&& other) noexcept;            ///< leaves `other` unusable
   DriftPhase& operator=(DriftPhase&& other) noexcept; ///< leaves `other` unusable
@@ -122,16 +135,17 @@ public:
   /// the epoch. The elements stay at their epoch. `undisturbed` is a promise that saves work: since the last call the
   /// particles have only moved on by one step and been wrapped. Throws InvariantError when elements are not finite,
   /// when particles go too far for the box or one collides more than 100,000 times in the step; Interrupted
-  /// (interrupt.hpp).
+  /// (interrupt.hpp). Precondition: accelerations of all particles or of none.
   void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally,
-               bool undisturbed = false);
+               bool undisturbed = false, const KickInterval& gravity = {});
 
   /// Carries out a step that ranks share: own particles and ghosts (decomposition/ghost_layer.hpp), which have the bits
   /// of their owners. The own particles become what they would on one rank, and each contact counts on all ranks.
   /// Returns false on all, with everything as it was, if an own particle of one went farther than the margin.
   /// Preconditions: all ranks call it; the finder is exact; no observer wants events, and there is no audit.
   bool collide_distributed(Particles& particles, const decomposition::GhostLayer& ghosts, const Communicator& ranks,
-                           const ShearingBox& box, double offset, CollisionTally& tally);
+                           const ShearingBox& box, double offset, CollisionTally& tally,
+                           const KickInterval& gravity = {});
 
   const finders::Finder& finder() const; ///< the one in use, which may be the observer's
   DriftCosts costs() const;              ///< since construction

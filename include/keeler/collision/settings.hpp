@@ -26,6 +26,8 @@ struct CollisionSettings {
 
   /// Returns v_cut for a radius sum (m), m rad^-1.
   double cut_speed(double radius_sum) const { return 0.5 * elastic_below * radius_sum; }
+  /// Returns v_cut/1000: a slower rebound would stay within the rounding of the contact, and so never end.
+  double min_rebound(double radius_sum) const { return 1e-3 * cut_speed(radius_sum); }
 };
 
 /// The state of a pair after a contact.
@@ -35,7 +37,7 @@ struct Rebound {
 };
 
 /// Returns restitution times the approach speed (m rad^-1) above v_cut, the approach speed below it, and never less
-/// than v_cut/1000: a slower rebound would stay within the rounding of the contact, and so never end (for ε = 0, say).
+/// than min_rebound() (for ε = 0, say).
 Rebound rebound(const CollisionSettings& settings, double approach_speed, double radius_low, double radius_high,
                 double orbital_frequency);
 

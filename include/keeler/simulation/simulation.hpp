@@ -156,6 +156,7 @@ private:
   decomposition::SlabHolding holding();
 
   void collide();
+  collision::KickInterval kicks_of_drift() const;
   Patch patch_of(const Particles& particles) const;
   Patch patch_of(const Particles& particles, double offset, double after) const;
   void wrap_changed(const Particles& before);
@@ -187,6 +188,7 @@ private:
   bool undisturbed_ = false;                           // particles have only moved since the last drift
   std::vector<std::unique_ptr<forces::Force>> forces_; // in the order of state_.forces
   std::unique_ptr<contact_solver::RestingContacts> resting_;
+  std::vector<std::uint8_t> at_rest_; // by particle: does it rest on another one in this kick interval? Empty: none
   std::unique_ptr<decomposition::Slabs> slabs_; // null unless distributed
   std::vector<std::size_t> moonlet_indices_;    // in the store; `elsewhere` on another rank
   std::vector<double> moonlet_wraps_;           // shift in x and y of each by this wrap, m

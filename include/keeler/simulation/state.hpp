@@ -35,9 +35,9 @@ struct EnergyBalance {
   double start = 0.0;  ///< this energy at the beginning of the run
   double translational_flux = 0.0; ///< ∫ Σ m c_x c_y dt
   double collisional_flux = 0.0;   ///< Σ over collisions and contacts at rest (x_j − x_i)(p_y gained by j)
-  double kick_work = 0.0;          ///< Σ m (c·Δv + ½Δv²) over the kicks of all forces
-  double resting_work = 0.0;       ///< by the impulses of contacts at rest, on the motion along the line of centres
-  double lost = 0.0;               ///< in collisions
+  double kick_work = 0.0; ///< Σ m (c·Δv + ½Δv²) over the kicks of all forces, and gravity's at contacts between them
+  double resting_work = 0.0; ///< by the impulses of contacts at rest, on the motion along the line of centres
+  double lost = 0.0;         ///< in collisions
   double residual = 0.0; ///< change of Σ m (½κ²e² + ½ν²i²) and of the spins' energy, less all accounts: rounding
 };
 
@@ -51,9 +51,9 @@ struct MoonletTrack {
 
 /// The part of the state that belongs to one force.
 struct ForceState {
-  std::string name;                  ///< its table in scenes; "gravity" for self-gravity
-  std::vector<Vec3> accelerations;   ///< of its last kick, m rad⁻², in the order of the particles
-  double work = 0.0;                 ///< of its kicks on the motion beyond the shear, kg m² rad⁻²
+  std::string name;                ///< its table in scenes; "gravity" for self-gravity
+  std::vector<Vec3> accelerations; ///< of its last kick, m rad⁻², in the order of the particles
+  double work = 0.0; ///< on the motion beyond the shear, by kicks and at contacts between them, kg m² rad⁻²
   double azimuthal_gain = 0.0;       ///< change of Σ m c_y² by its kicks, kg m² rad⁻²
   std::vector<double> moonlet_gains; ///< momentum along the orbit that they gave each moonlet, kg m rad⁻¹
 };

@@ -18,7 +18,7 @@ using Solver = GravitySettings::Solver;
 constexpr double thousandth = 1e-3;      // of an orbit
 constexpr int max_kick_every = 1000;     // upper limit of gravity.kick_every
 constexpr std::size_t max_direct = 5000; // particles: with more, the sum over all pairs takes hours
-constexpr double automatic_kick = 4e-3;  // orbits, typical of an automatic step in wakes
+constexpr double automatic_kick = 8e-3;  // orbits, typical of an automatic step in wakes
 
 std::vector<std::string> step_overrides(const Scene& scene, const Kicks& kicks) {
   std::vector<std::string> overrides = {fmt::format("time.step={}", kicks.step)};

@@ -127,8 +127,9 @@ BoxDistance LineCells::farthest_neighbour() const {
     x = std::max(x, level.reach_x);
     y = std::max(y, level.reach_y + box_.shear * half_ * level.reach_x);
   }
-  return {static_cast<std::uint64_t>(2.0 * x * per_metre_x_) + 4,
-          static_cast<std::uint64_t>(2.0 * y * per_metre_y_) + 4};
+  constexpr double two = 2.0 + 2e-5; // lines are tested in single precision
+  return {static_cast<std::uint64_t>(two * x * per_metre_x_) + 4,
+          static_cast<std::uint64_t>(two * y * per_metre_y_) + 4};
 }
 
 void LineCells::sort(std::span<const Line> lines, std::size_t cells) {

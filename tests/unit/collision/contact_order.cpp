@@ -96,6 +96,7 @@ TEST_CASE("contacts of domains are merged by time and ids, and in a domain stay 
                            .begin = -0.5 * step_length,
                            .kick_pull = 0.0,
                            .rest_pull = 0.0,
+                           .gravity = {},
                            .watcher = nullptr,
                            .record_taker = nullptr};
     REQUIRE(order.sort(made.domains, made.domains.size(), step));

@@ -295,7 +295,10 @@ end = 1.0
       if (k % every == 0)
         half_kick();
       CollisionTally tally;
-      const auto expected = plain.collide(copy, state.box, state.epoch_offset(), tally);
+      const double middle = 0.5 * step * (every - 1 - 2 * (k % every)); // of the kick interval
+      const std::vector<Vec3> accelerations = state.forces[0].accelerations;
+      const auto expected = plain.collide(copy, state.box, state.epoch_offset(), tally,
+                                          {.accelerations = accelerations, .middle = middle});
       recorder.records.clear();
       simulation.advance();
       INFO("step ", k);

@@ -23,8 +23,8 @@ public:
         finder_(finders::make_finder("certified")) {}
 
   std::vector<collision::CollisionRecord> collide(Particles& particles, const ShearingBox& box, double offset,
-                                                  CollisionTally& tally) {
-    particles_ = &particles, box_ = box, offset_ = offset;
+                                                  CollisionTally& tally, const collision::KickInterval& gravity = {}) {
+    particles_ = &particles, box_ = box, offset_ = offset, gravity_ = gravity;
     lost_ = flux_ = gain_ = {};
     begin();
     last_.assign(particles.size(), -0.5 * step_);
@@ -109,7 +109,10 @@ private:
     const Rotation rotation(f_, time);
     const State relative = state_at(box_.image_of(b.elements, image, offset_) - a.elements, f_, rotation);
     const Vec3 normal = relative.position.normalized();
-    const double speed = -relative.velocity.dot(normal);
+    const Vec3 lag = lag_of(places, time);
+    const bool resolved = is_resolved(a, b, relative.velocity, lag, normal);
+    const Vec3 velocity = resolved ? relative.velocity + lag : relative.velocity;
+    const double speed = -velocity.dot(normal);
     const collision::Rebound after = rebound(settings_, speed, a.radius, b.radius, omega_);
     if (!(speed > -after.speed))
       return false;
@@ -121,14 +124,14 @@ private:
       Vec3 &spin_a = particles_->spins[places.first], &spin_b = particles_->spins[places.second];
       const particles::SpinTurn turn(time);
       const collision::Sliding sliding =
-          slide(*settings_.friction,
-                {a, b, normal, relative.velocity, turn.from_epoch(spin_a), turn.from_epoch(spin_b)}, normal_impulse);
+          slide(*settings_.friction, {a, b, normal, velocity, turn.from_epoch(spin_a), turn.from_epoch(spin_b)},
+                normal_impulse);
       spin_a += turn.to_epoch(collision::spin_change(a, normal, sliding.impulse));
       spin_b += turn.to_epoch(collision::spin_change(b, normal, sliding.impulse));
       impulse += sliding.impulse;
       rubbed = sliding.energy_lost;
     }
-    const double tangential_speed = (relative.velocity + speed * normal).norm();
+    const double tangential_speed = (velocity + speed * normal).norm();
     const Vec3 place = state_at(a.elements, f_, rotation).position + a.radius * normal;
     double gain = azimuthal_gain(a, -impulse / a.mass, f_, rotation);
     gain += azimuthal_gain(b, impulse / b.mass, f_, rotation);
@@ -137,12 +140,29 @@ private:
     kick(b.elements, impulse / b.mass, f_, rotation);
     last_[places.first] = last_[places.second] = time;
     ++(after.fast ? tally.fast : tally.slow);
-    const double lost = rubbed + 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
+    double lost = rubbed + 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
+    if (!resolved)
+      lost -= impulse.dot(lag);
     lost_ += lost;
     flux_ += relative.position.x() * impulse.y();
     records.push_back(
         {time, low_id, high_id, image, speed, after.fast, tangential_speed, lost, a.radius + b.radius, place});
     return true;
+  }
+
+  // Returns how much the true relative velocity of a pair exceeds that of the drift.
+  Vec3 lag_of(const Places& places, double time) const {
+    if (gravity_.accelerations.empty())
+      return Vec3::Zero();
+    assert(gravity_.at_rest.empty());
+    return (time - gravity_.middle) * (gravity_.accelerations[places.second] - gravity_.accelerations[places.first]);
+  }
+  // True if a pair approaches at its true velocity, and its rebound from that separates it in the drift.
+  bool is_resolved(const Body& a, const Body& b, const Vec3& velocity, const Vec3& lag, const Vec3& normal) const {
+    const double speed = -(velocity + lag).dot(normal), radii = a.radius + b.radius;
+    return !gravity_.accelerations.empty() && speed > 0.0 &&
+           rebound(settings_, speed, a.radius, b.radius, omega_).speed - lag.dot(normal) >=
+               1e-3 * settings_.cut_speed(radii);
   }
 
   collision::CollisionSettings settings_;
@@ -153,6 +173,7 @@ private:
   Particles* particles_ = nullptr;
   ShearingBox box_;
   double offset_ = 0.0;
+  collision::KickInterval gravity_;
   std::vector<double> last_; // time of the last velocity change in this step, or its begin
   std::map<Key, Places> pending_;
   ExactSum lost_, flux_, gain_; // over the step

@@ -74,7 +74,7 @@ TEST_CASE("the step follows the contacts of a particle, within its bounds, and d
 
 TEST_CASE("the kick interval follows the share of contacts that kicks make") {
   const StepControl control{.step = 1, .kick = 16};
-  CHECK(decided(control, 0.05, 0.01).kick == 16);
+  CHECK(decided(control, 0.05, 0.05).kick == 16);
   CHECK(decided(control, 0.05, 0.2).kick == 8);
   CHECK(decided(control, 0.05, 0.001).kick == 32);
   CHECK(decided({.step = 1, .kick = 64}, 0.05, 0.001).kick == 64);
