@@ -52,7 +52,8 @@ TEST_CASE("every former name leads to its key, with a notice, and the resolved s
       {"start={ from = \"a.hdf\", keep = 0.5 }", "start.keep_fraction"},
       {"output.collisions.share=0.5", "output.collisions.fraction"}};
   std::set<std::string> tested;
-  for (const auto& [override, path] : changes) {
+  for (const auto& [changed, path] : changes) {
+    const std::string& override = changed; // clang 14 captures no structured binding
     CAPTURE(override);
     const Scene scene = parse_scene(least, "s.toml", {override});
     CHECK(scene.notices.back().ends_with("' is now called '" + path + "'"));
