@@ -33,7 +33,7 @@ void store(const std::filesystem::path& file, const Patch& patch, const Scene& s
   std::filesystem::create_directories(file.parent_path(), ignored);
   try {
     io::write_snapshot(file, patch, {scene.resolved, io::collect_provenance({})});
-  } catch (const IoError&) { // the next call makes it again
+  } catch (const Error&) { // the next call makes it again
   }
 }
 

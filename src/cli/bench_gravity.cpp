@@ -76,14 +76,14 @@ void add_bench_gravity(CLI::App& bench_command, Action& action) {
   CLI::App& gravity = *bench_command.add_subcommand(
       "gravity", "the gravity solvers: cost and error of each setting, in a patch of Saturn's A ring");
   one_of(gravity.add_option("--solver", options->bench.solver,
-                            "one solver (default: all, direct only up to 10000 particles)"),
+                            "one solver (default: all, direct only up to 10000 particles, so not of settled)"),
          bench::gravity_solver_names());
-  gravity.add_option("--count", options->bench.count, "particles (default: 100000)")->transform(particle_number());
+  gravity.add_option("--count", options->bench.count, "particles, at least 25336 of settled (default: 100000)")->transform(particle_number());
   add_state(gravity, options->bench.state);
   add_repeats(gravity, options->bench.repeats);
   options->threads.add_to(gravity);
   gravity.add_flag("--json", options->json, "print the numbers as JSON");
-  examples_of(gravity, {"keeler bench gravity --count 10000"});
+  examples_of(gravity, {"keeler bench gravity --state uniform --count 10000"});
   gravity.callback([options, &action] { action = [options] { return bench(*options); }; });
 }
 

@@ -35,7 +35,7 @@ void add_bench_step(CLI::App& bench_command, Action& action, const Communicator&
       "step", "a whole step, gravity and collisions, in a patch of Saturn's A ring or in a snapshot");
   bench::StepBenchSettings& s = options->bench;
   CLI::Option* count =
-      step.add_option("--count", s.count, "particles of the patch (default: 100000)")->transform(particle_number());
+      step.add_option("--count", s.count, "particles of the patch, at least 25336 of settled (default: 100000)")->transform(particle_number());
   CLI::Option& state = add_state(step, s.state);
   step.add_option("--from", s.from, "time the state of this snapshot, with the scene in it")
       ->type_name("FILE")
@@ -51,7 +51,7 @@ void add_bench_step(CLI::App& bench_command, Action& action, const Communicator&
   add_repeats(step, s.repeats);
   options->threads.add_to(step);
   step.add_flag("--json", options->json, "print the numbers as JSON");
-  examples_of(step, {"keeler bench step --count 10000"});
+  examples_of(step, {"keeler bench step --state clumped --count 10000"});
   step.callback([options, &action] { action = [options] { return bench(*options); }; });
 }
 
