@@ -18,8 +18,8 @@ namespace keeler::tune {
 inline constexpr double margin_for_seeds = 0.8;
 
 struct TuneSettings {
-  double force_error = 4e-3;         ///< largest rms error of the force
-  double physics_error = 0.01;       ///< largest relative error by kicks, of the loss over the work of the shear and of ν
+  double force_error = 4e-3;   ///< largest rms error of the force
+  double physics_error = 0.01; ///< largest relative error by kicks, of the loss over the work of the shear and of ν
   std::optional<double> orbits = {}; ///< age of the probed state; default 4, 8 without self-gravity
   int max_threads = 1;
   std::function<void(const Progress&)> progress = {}; ///< may be empty
