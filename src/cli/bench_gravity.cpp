@@ -78,7 +78,8 @@ void add_bench_gravity(CLI::App& bench_command, Action& action) {
   one_of(gravity.add_option("--solver", options->bench.solver,
                             "one solver (default: all, direct only up to 10000 particles, so not of settled)"),
          bench::gravity_solver_names());
-  gravity.add_option("--count", options->bench.count, "particles, at least 25336 of settled (default: 100000)")->transform(particle_number());
+  gravity.add_option("--count", options->bench.count, "particles, at least 25336 of settled (default: 100000)")
+      ->transform(particle_number());
   add_state(gravity, options->bench.state);
   add_repeats(gravity, options->bench.repeats);
   options->threads.add_to(gravity);
