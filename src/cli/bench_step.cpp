@@ -35,7 +35,8 @@ void add_bench_step(CLI::App& bench_command, Action& action, const Communicator&
       "step", "a whole step, gravity and collisions, in a patch of Saturn's A ring or in a snapshot");
   bench::StepBenchSettings& s = options->bench;
   CLI::Option* count =
-      step.add_option("--count", s.count, "particles of the patch, at least 25336 of settled (default: 100000)")->transform(particle_number());
+      step.add_option("--count", s.count, "particles of the patch, at least 25336 of settled (default: 100000)")
+          ->transform(particle_number());
   CLI::Option& state = add_state(step, s.state);
   step.add_option("--from", s.from, "time the state of this snapshot, with the scene in it")
       ->type_name("FILE")
