@@ -49,7 +49,8 @@ inline ContactLaw contact_law(const CollisionSettings& settings, const KickInter
     law.approach = -law.velocity.dot(normal);
     if (law.approach > 0.0) {
       law.rebound = rebound_of(law.approach);
-      law.resolved = law.rebound.speed - law.lag.dot(normal) >= settings.min_rebound(pair.radius_low + pair.radius_high);
+      law.resolved =
+          law.rebound.speed - law.lag.dot(normal) >= settings.min_rebound(pair.radius_low + pair.radius_high);
     }
   }
   if (!law.resolved) {

@@ -168,8 +168,8 @@ private:
     Contact contact;
     contact.time = event.time;
     const ContactLaw law =
-        contact_law(step_.settings, step_.gravity, step_.orbital_frequency,
-                    {event.low, event.high, a.radius, b.radius}, relative.velocity, normal, event.time);
+        contact_law(step_.settings, step_.gravity, step_.orbital_frequency, {event.low, event.high, a.radius, b.radius},
+                    relative.velocity, normal, event.time);
     if (!law.acts())
       return;
     const double speed = law.approach, speed_after = law.rebound.speed;

@@ -123,8 +123,7 @@ public:
     });
     if (step_.record_taker)
       gather_records();
-    ranks_.merge(
-        {&outcome_.energy_lost, &outcome_.momentum_flux, &outcome_.azimuthal_gain, &outcome_.kick_work});
+    ranks_.merge({&outcome_.energy_lost, &outcome_.momentum_flux, &outcome_.azimuthal_gain, &outcome_.kick_work});
     outcome_.add_sums_to(tally);
     std::uint64_t counts[] = {tally_.fast, tally_.slow, tally_.unresolved};
     ranks_.sum(counts);

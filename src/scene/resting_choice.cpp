@@ -48,8 +48,9 @@ RestingChoice choose_resting_contacts(const PatchScale& patch, const Scene& scen
   const double interval =
       scene.time.automatic ? automatic_interval : scene.time.step * static_cast<double>(scene.kick_interval());
   const double excess = excess_of_bouncing(patch.optical_depth, r_h, interval);
-  return {excess >= allowed_excess, fmt::format("kicks give bouncing contacts about {} % of the energy that the shear supplies",
-                                                format_number(100.0 * excess, 2))};
+  return {excess >= allowed_excess,
+          fmt::format("kicks give bouncing contacts about {} % of the energy that the shear supplies",
+                      format_number(100.0 * excess, 2))};
 }
 
 } // namespace keeler::scene

@@ -125,7 +125,8 @@ void Simulation::advance() {
 void Simulation::collide() {
   if (ranks_.distributed())
     return collide_distributed();
-  drift_.collide(state_.particles, state_.box, state_.epoch_offset(), state_.collisions, undisturbed_, kicks_of_drift());
+  drift_.collide(state_.particles, state_.box, state_.epoch_offset(), state_.collisions, undisturbed_,
+                 kicks_of_drift());
 }
 
 // Returns the interval between kicks of self-gravity that the next drift is a part of.

@@ -10,8 +10,8 @@ namespace keeler::simulation {
 namespace {
 
 constexpr std::uint64_t enough = 500; // contacts needed for a decision
-// In the wakes of the A ring 12 % of contacts are unresolved at kicks 16/1000 of an orbit apart, and 2.7 % at 8/1000. The
-// viscosity of a dense patch errs by 0.4 % at 28 %, and by 1.8 % at 42 % (docs/dev/step.md).
+// In the wakes of the A ring 12 % of contacts are unresolved at kicks 16/1000 of an orbit apart, and 2.7 % at 8/1000.
+// The viscosity of a dense patch errs by 0.4 % at 28 %, and by 1.8 % at 42 % (docs/dev/step.md).
 constexpr double most_unresolved = 0.08, few_unresolved = 0.02;
 constexpr double max_contacts = 0.5, few_contacts = 0.25; // per particle and drift
 

@@ -191,8 +191,8 @@ std::vector<Row> rebounds() {
   for (const double interval : {2e-3, 1e-3, 5e-4}) {
     const double error = test::rebound_errors(300, interval, 0.5).rms;
     rows.push_back(
-        {.what = fmt::format("rebound under gravity: rms error of its speed over that at twice the interval, kicks of {}",
-                             interval),
+        {.what = fmt::format(
+             "rebound under gravity: rms error of its speed over that at twice the interval, kicks of {}", interval),
          .measured = error / twice_as_long,
          .expected = 0.25,
          .tolerance = 0.025,
