@@ -51,8 +51,9 @@ double encountered_optical_depth(const Scene& scene) {
 }
 
 double typical_restitution(const Scene& scene) {
-  const double speed = scene.particles.layer_sizes().effective_radius * scene.planet.orbital_frequency;
-  return scene.collisions.restitution({.speed = 3.0 * speed});
+  const double radius = scene.particles.layer_sizes().effective_radius;
+  return scene.collisions.restitution(
+      {.speed = 3.0 * radius * scene.planet.orbital_frequency, .radius_low = radius, .radius_high = radius});
 }
 
 double layer_crowding(double optical_depth) {

@@ -107,4 +107,12 @@ TEST_CASE("a lower restitution gives more contacts, above all slow ones") {
   }
 }
 
+TEST_CASE("a law that depends on radii is asked for an impact of typical particles") {
+  const Scene scene =
+      parse_scene(test::least, "s.toml",
+                  {"collisions.restitution={ law = \"viscoelastic\", reference_speed = 6e-4, reference_radius = 1 }"});
+  CHECK(typical_restitution(scene) == doctest::Approx(0.396).epsilon(1e-3)); // 3 r Ω is the reference speed
+  CHECK(scene_contacts(scene).smooth.all() > 0.0);
+}
+
 } // namespace contact_rates_test
