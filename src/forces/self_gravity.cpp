@@ -140,7 +140,7 @@ std::vector<Key> gravity_keys() {
        .meaning =
            "contacts that a kick does not resolve: carried, by impulses that act with it, or bounced as all others; "
            "auto: carried where aggregates last (r_h of 1 or more), where grains stay on a moonlet, and where optical "
-           "depth, r_h and kick interval would make bounced ones lose 1.5 % too much",
+           "depth, r_h and kick interval make kicks give bounced ones 1.5 % of the energy of the shear",
        .choices = {"auto", "carried", "bounced"},
        .only_with = {"solver", {"direct", "tree", "fft", "mesh", "auto"}},
        .unhashed = "\"bounced\""},
