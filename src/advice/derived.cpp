@@ -17,10 +17,11 @@
 namespace keeler::advice {
 namespace {
 
-// Peak memory of `keeler run` of examples/a-ring-wakes and examples/equilibrium, measured at N = 10⁵ and 4 × 10⁵.
+// Peak memory of `keeler run` of examples/a-ring-wakes, settled and fresh, and examples/equilibrium, N = 10⁵ to 9 ×
+// 10⁵.
 namespace cost {
-constexpr double program_bytes = 33e6;  // code, libraries, buffers that do not grow with N
-constexpr double drift_bytes = 590.0;   // lines, cells, lists, event counts, buffers: at most 660 with state
+constexpr double program_bytes = 25e6;  // code, libraries, buffers that do not grow with N
+constexpr double drift_bytes = 430.0;   // lines, cells, lists, event counts, buffers, in settled wakes
 constexpr double tree_node_bytes = 120; // box, mass, centre, quadrupole, links
 constexpr double nodes_per_particle = 0.5;
 constexpr double tiled_bytes = 80.0; // copies of the particles in the order of the mesh's tiles

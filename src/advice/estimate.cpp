@@ -40,7 +40,7 @@ constexpr double row = 12.0, row_itself = 2e4;            // particle and row; r
 constexpr double stress = 350.0;                          // particle and measurement of gravity's energy
 constexpr double snapshot = 1550.0, checkpoint = 500.0;   // particle and file
 constexpr double closing = 1000.0;                        // particle: overlaps, hash
-constexpr double force_check = 1500.0;                    // particle; checks also take half a per cent of the run
+constexpr double check_pair = 0.19;                       // pair; checks also take half a per cent of the run
 } // namespace cost
 
 constexpr double usual_step = 1e-3;     // orbits, of the scenes that were measured
@@ -173,9 +173,8 @@ double output_ns(const Scene& scene, double count) {
   const std::int64_t steps = scene.time.end_step;
   const double rows = files(scene.output.series_every, steps, 0.0);
   const bool pairs = scene.gravity && scene.gravity->by_pairs();
-  // Only a 25th of the particles of a long box is checked, each with thousands of images instead of 25.
-  const double images = pairs ? near_images(scene, {.rings = 2}) : 0.0;
-  const double checks = pairs ? cost::force_check * std::max(1.0, images / 625.0) : 0.0;
+  const double images = pairs ? near_images(scene, {.rings = 1}) : 0.0;
+  const double checks = pairs ? cost::check_pair * images * std::clamp(128.0 * 25.0 / images, 8.0, 128.0) : 0.0;
   const double stresses = pairs ? cost::stress * files(scene.output.stress_every, steps, 0.0) : 0.0;
   return rows * (cost::row * count + cost::row_itself) + count * stresses +
          count * (cost::snapshot * files(scene.output.snapshot_every, steps, 1.0) +

@@ -54,6 +54,10 @@ DriftCosts DriftPhase::costs() const {
   return engine_->costs();
 }
 
+void DriftPhase::release_contacts() {
+  engine_->release_contacts();
+}
+
 void DriftPhase::release() {
   engine_->release();
 }

@@ -160,6 +160,13 @@ std::uint64_t OptimisticLoop::max_partners() const {
   return most;
 }
 
+void OptimisticLoop::release() {
+  state_ = OptimisticState();
+  assigned_ = std::vector<std::uint32_t>();
+  assigned_begins_ = std::vector<std::uint32_t>();
+  order_ = ContactOrder();
+}
+
 std::size_t OptimisticLoop::bytes() const {
   std::size_t total = state_.log.bytes() + state_.locks.bytes() + order_.bytes() +
                       state_.domains.capacity() * sizeof(OptimisticDomain) +

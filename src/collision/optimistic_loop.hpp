@@ -66,6 +66,9 @@ public:
   /// Returns the largest number of partners that one particle had in one search.
   std::uint64_t max_partners() const;
 
+  /// Releases the memory of the last carry_out() and with it its results.
+  void release();
+
   /// Returns the sums over all steps so far.
   const Counts& counts() const { return counts_; }
   std::size_t bytes() const;

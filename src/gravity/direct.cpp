@@ -88,18 +88,15 @@ void sum_in_single(Targets targets, const std::vector<Vec3>& shifts, const Attra
     sums[k] = sources.mass_unit * Vec3(block.ax[k], block.ay[k], block.az[k]);
 }
 
-// Returns the attraction per G of all sources and their near images on sources[k] for each k in `indices`.
-std::vector<Vec3> near_attractions(const std::vector<PointSource>& sources, std::span<const std::size_t> indices,
+// Returns the attraction per G of all sources and their near images on each target.
+std::vector<Vec3> near_attractions(const std::vector<PointSource>& sources, const std::vector<PointSource>& targets,
                                    const std::vector<Vec3>& shifts, const AttractionKernels& kernels,
                                    Precision precision) {
   const bool single = precision == Precision::single_precision;
   const SingleSources single_sources = single ? in_single(sources) : SingleSources{};
-  std::vector<PointSource> targets;
-  for (const std::size_t index : indices)
-    targets.push_back(sources[index]);
-  std::vector<Vec3> result(indices.size());
+  std::vector<Vec3> result(targets.size());
   constexpr std::size_t block_size = TargetBlock::capacity;
-  parallel_for((indices.size() + block_size - 1) / block_size,
+  parallel_for((targets.size() + block_size - 1) / block_size,
                [&](std::size_t block) {
                  const std::size_t first = block * block_size;
                  const Targets some{&targets[first], std::min(block_size, targets.size() - first)};
@@ -134,17 +131,17 @@ std::vector<Vec3> sampled_accelerations(const GravityProblem& problem, std::span
   std::vector<std::size_t> sorted_index(order.size());
   for (std::size_t k = 0; k < order.size(); ++k)
     sorted_index[order[k]] = k;
-  std::vector<std::size_t> indices;
+  std::vector<PointSource> targets;
   for (const std::size_t k : sample) {
     assert(k < sorted_index.size());
-    indices.push_back(sorted_index[k]);
+    targets.push_back(sources[sorted_index[k]]);
   }
   const ImageSettings all = rings_for_height(images, problem.box, height_of(sources));
   std::vector<Vec3> result =
-      near_attractions(sources, indices, near_images(problem.box, offset, all), attraction_kernels(set), precision);
-  const std::vector<Vec3> far = far_accelerations<double>(problem, offset, all, sources, set);
+      near_attractions(sources, targets, near_images(problem.box, offset, all), attraction_kernels(set), precision);
+  const std::vector<Vec3> far = far_accelerations<double>(problem, offset, all, sources, targets, set);
   for (std::size_t k = 0; k < result.size(); ++k)
-    result[k] = problem.newton_g * result[k] + far[indices[k]];
+    result[k] = problem.newton_g * result[k] + far[k];
   return result;
 }
 

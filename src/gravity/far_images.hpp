@@ -51,15 +51,18 @@ public:
   /// displacement inside (±L_x, ±L_y, ±2 height).
   double potential(const Vec3& displacement) const;
 
-  /// Returns the attraction per G (kg/m²) of the far images of all bodies on each of them, computed in float or double.
-  /// Bodies have x, y, z inside the cell and a mass.
+  /// Returns the attraction per G (kg/m²) of the far images of all bodies on each target, computed in float or double.
+  /// Bodies have x, y, z inside the cell and a mass; targets are some or all of them.
   template<class Real, class Body>
-  std::vector<Vec3> attractions(const std::vector<Body>& bodies, InstructionSet set) const;
+  std::vector<Vec3> attractions(const std::vector<Body>& bodies, const std::vector<Body>& targets,
+                                InstructionSet set) const;
 
 private:
   using Coefficients = std::vector<double>; // of the monomials of shape_, in order
 
   Coefficients potential_of(const Coefficients& moments) const;
+  template<class Real, class Body>
+  Coefficients potential_of(const std::vector<Body>& bodies, const FarKernels<Real>& kernels) const;
   template<class Real, class Body>
   void load(FarBlock<Real>& block, const std::vector<Body>& bodies, std::size_t begin) const;
 
@@ -82,10 +85,11 @@ void FarImages::load(FarBlock<Real>& block, const std::vector<Body>& bodies, std
   }
 }
 
+// Returns the coefficients of the potential of the far images of all bodies.
 template<class Real, class Body>
-std::vector<Vec3> FarImages::attractions(const std::vector<Body>& bodies, InstructionSet set) const {
+FarImages::Coefficients FarImages::potential_of(const std::vector<Body>& bodies,
+                                                const FarKernels<Real>& kernels) const {
   constexpr std::size_t capacity = FarBlock<Real>::capacity;
-  const FarKernels<Real> kernels = far_kernels<Real>(set);
   const std::size_t blocks = (bodies.size() + capacity - 1) / capacity;
   std::vector<Coefficients> parts(blocks, Coefficients(shape_.size));
   parallel_for(
@@ -100,19 +104,27 @@ std::vector<Vec3> FarImages::attractions(const std::vector<Body>& bodies, Instru
   for (const Coefficients& part : parts)
     for (std::size_t k = 0; k < moments.size(); ++k)
       moments[k] += part[k];
-  const Coefficients exact = potential_of(moments);
+  return potential_of(moments);
+}
+
+template<class Real, class Body>
+std::vector<Vec3> FarImages::attractions(const std::vector<Body>& bodies, const std::vector<Body>& targets,
+                                         InstructionSet set) const {
+  constexpr std::size_t capacity = FarBlock<Real>::capacity;
+  const FarKernels<Real> kernels = far_kernels<Real>(set);
+  const Coefficients exact = potential_of<Real>(bodies, kernels);
   const std::vector<Real> potential(exact.begin(), exact.end());
-  std::vector<Vec3> result(bodies.size());
-  parallel_for(
-      blocks,
-      [&](std::size_t b) {
-        FarBlock<Real> block;
-        load(block, bodies, b * capacity);
-        kernels.slopes(block, shape_, potential.data());
-        for (std::size_t k = 0; k < block.count; ++k)
-          result[b * capacity + k] = -Vec3(block.x[k] / scale_.x(), block.y[k] / scale_.y(), block.z[k] / scale_.z());
-      },
-      1);
+  std::vector<Vec3> result(targets.size());
+  parallel_for((targets.size() + capacity - 1) / capacity,
+               [&](std::size_t b) {
+                 FarBlock<Real> block;
+                 load(block, targets, b * capacity);
+                 kernels.slopes(block, shape_, potential.data());
+                 for (std::size_t k = 0; k < block.count; ++k)
+                   result[b * capacity + k] =
+                       -Vec3(block.x[k] / scale_.x(), block.y[k] / scale_.y(), block.z[k] / scale_.z());
+               },
+               1);
   return result;
 }
 
@@ -122,18 +134,19 @@ inline constexpr std::size_t few_bodies = 10;
 /// Returns the exact attraction (1/m², G = 1) of the far images of a unit mass at a displacement from it.
 Vec3 far_pull(const Lattice& lattice, const std::vector<Vec3>& near, const Vec3& displacement);
 
-/// Returns the acceleration (m rad^-2) of each body by the far images; zero if the settings exclude them. Precondition:
-/// the order of the bodies depends on the problem alone.
+/// Returns the acceleration (m rad^-2) of each target, which is one of the bodies, by the far images of all; zero if
+/// the settings exclude them. Precondition: the order of the bodies depends on the problem alone.
 template<class Real, class Body>
 std::vector<Vec3> far_accelerations(const GravityProblem& problem, double offset, const ImageSettings& images,
-                                    const std::vector<Body>& bodies, InstructionSet set) {
+                                    const std::vector<Body>& bodies, const std::vector<Body>& targets,
+                                    InstructionSet set) {
   if (!images.far)
-    return std::vector<Vec3>(bodies.size(), Vec3::Zero());
+    return std::vector<Vec3>(targets.size(), Vec3::Zero());
   std::vector<Vec3> result;
   if (bodies.size() <= few_bodies) {
     const Lattice lattice(problem.box, offset);
     const std::vector<Vec3> near = near_images(problem.box, offset, images);
-    for (const Body& a : bodies) {
+    for (const Body& a : targets) {
       result.push_back(Vec3::Zero());
       for (const Body& b : bodies)
         result.back() += problem.newton_g * b.mass * far_pull(lattice, near, {a.x - b.x, a.y - b.y, a.z - b.z});
@@ -141,7 +154,7 @@ std::vector<Vec3> far_accelerations(const GravityProblem& problem, double offset
     return result;
   }
   const FarImages far(problem.box, offset, images.rings, height_of(bodies));
-  result = far.attractions<Real>(bodies, set);
+  result = far.attractions<Real>(bodies, targets, set);
   for (Vec3& a : result)
     a *= problem.newton_g;
   return result;

@@ -201,6 +201,7 @@ void FftSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accele
   const auto total = exact_total<ExactVec3>(sums.size(), [&](ExactVec3& all, std::size_t tile) { all += sums[tile]; });
   const Vec3 mean = total.value() / static_cast<double>(count); // masses are in units of their mean
   parallel_for(count, [&](std::size_t k) { accelerations[k] -= mean; });
+  parts_->release();
 }
 
 // The mesh's part of dΦ/dγ is a central difference: particles and box are sheared by ± strain.
@@ -226,6 +227,7 @@ GravityEnergy FftSolver::energy(const GravityProblem& problem) {
     const double half = 0.5 / parts_->radius; // each pair is summed twice
     near = {half * near.potential, half * near.stress};
   }
+  parts_->release();
   const double mass = parts_->sorted.mass_unit(), unit = problem.newton_g * mass * mass;
   return {-unit * (0.5 * (potentials[0] + potentials[1]) + near.potential),
           -unit * (0.5 * (potentials[1] - potentials[0]) / strain + near.stress)};

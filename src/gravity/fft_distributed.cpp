@@ -142,7 +142,7 @@ void FftSolver::Parts::accelerate_distributed(const GravityProblem& problem, std
   ranks.merge({&total.x, &total.y, &total.z});
   const Vec3 mean = total.value() / static_cast<double>(count); // subtracted as in FftSolver::accelerate()
   solve.ghosts.return_to_owners(computed, ranks, [&](std::size_t k, const Vec3& a) { accelerations[k] = a - mean; });
-  by_columns.adopt_memory(AlignedArray<std::complex<float>>(std::move(memory)));
+  release();
 }
 
 double FftSolver::Parts::mesh_potential_distributed(const GravityProblem& problem, double offset) {

@@ -52,6 +52,15 @@ struct FftSolver::Parts {
   /// Returns the sum over tiles [first_tile, first_tile + tiles).
   NearSums near_sums(const ShearingBox& box, double offset, std::size_t first_tile, std::size_t tiles);
 
+  /// Releases what only a solve in progress needs. The memory of a run is for one thing after another.
+  void release() {
+    sorted.release();
+    mesh.release_memory();
+    by_columns.release_memory();
+    by_waves.release_memory();
+    folded = {};
+  }
+
   /// Writes the accelerations of a tile's particles at their indices, and returns Σ m a over the tile in units of mass.
   Vec3 accelerate_tile(const GravityProblem& problem, double offset, std::size_t tile, std::span<Vec3> accelerations);
 
@@ -72,7 +81,7 @@ struct FftSolver::Parts {
   SortedParticles sorted;
   Mesh mesh;
   ShearedTransform transform;
-  // of a distributed solve, kept for their memory
+  // of a distributed solve
   HalfSpectrum by_columns, by_waves;
   std::vector<FoldedParticle> folded;
   // of the solve in progress

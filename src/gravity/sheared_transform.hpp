@@ -48,9 +48,8 @@ public:
     values_ = std::move(memory);
     reset(columns, waves, planes);
   }
-  /// Releases the memory and with it all values; and takes memory over.
+  /// Releases the memory and with it all values.
   AlignedArray<Complex> release_memory() { return std::move(values_); }
-  void adopt_memory(AlignedArray<Complex> memory) { values_ = std::move(memory); }
 
   const IndexRange& waves() const { return waves_; }
   std::size_t blocks() const { return columns_.size(); }
@@ -107,18 +106,18 @@ public:
   /// `to`. Both arrays have one wave m of every plane, with n along a row. Unscaled: if `to` = `from` the mesh is
   /// multiplied by columns × rows.
   template<class Change> void apply(Mesh& mesh, const Change& change) {
-    reset_whole();
-    forward_y(mesh, whole_);
-    change_waves(whole_, change);
-    backward_y(whole_, mesh);
+    HalfSpectrum whole = whole_spectrum();
+    forward_y(mesh, whole);
+    change_waves(whole, change);
+    backward_y(whole, mesh);
   }
 
   /// Transforms the mesh and calls visitor(m, spectra, scratch) for each wave; scratch has the size of spectra. Adds
   /// the mesh's ghosts along y to its rows, and leaves it unchanged otherwise.
   template<class Visitor> void visit(Mesh& mesh, const Visitor& visitor) {
-    reset_whole();
-    forward_y(mesh, whole_);
-    visit_waves(whole_, visitor);
+    HalfSpectrum whole = whole_spectrum();
+    forward_y(mesh, whole);
+    visit_waves(whole, visitor);
   }
 
   /// The three steps of apply(), for distributed meshes. Preconditions: for forward_y() and backward_y() the half
@@ -149,9 +148,11 @@ private:
   using Complex = std::complex<float>;
   static constexpr std::size_t block = HalfSpectrum::block;
 
-  void reset_whole() {
+  HalfSpectrum whole_spectrum() const {
     const IndexRange all{0, shape_.columns + MeshShape::ghosts};
-    whole_.reset({&all, 1}, {0, waves()}, shape_.planes);
+    HalfSpectrum whole;
+    whole.reset({&all, 1}, {0, waves()}, shape_.planes);
+    return whole;
   }
   /// The phase of wave m at each column, as (cosine, cosine) and (−sine, sine).
   Complex* cosines(std::size_t m) { return phases_.data() + 2 * (m - first_wave_) * row_length(); }
@@ -167,7 +168,6 @@ private:
   MeshShape shape_;
   double offset_fraction_ = 0.0;
   std::size_t first_wave_ = 0;
-  HalfSpectrum whole_;
   AlignedArray<Complex> phases_;
   std::vector<AlignedArray<Complex>> scratch_; // per thread
   std::size_t planned_columns_ = 0, planned_rows_ = 0;

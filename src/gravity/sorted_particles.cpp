@@ -1,5 +1,7 @@
 #include "sorted_particles.hpp"
 
+#include "aligned_array.hpp"
+
 #include <keeler/core/counting_sort.hpp>
 #include <keeler/core/exact_sum.hpp>
 #include <keeler/gravity/images.hpp>
@@ -60,21 +62,25 @@ void SortedParticles::sort_source(const Source& source, const ShearingBox& box, 
   first_tile_ = columns.begin * tiling_.tile_rows();
   tiles_behind_ = tiling_.count() - first_tile_;
   constexpr std::size_t ahead = 24;
-  resize_scratch(unsorted_, count);
-  resize_scratch(tile_of_, count);
-  resize_scratch(sorted_, count);
+  AlignedArray<Entry> unsorted, sorted;
+  AlignedArray<std::uint32_t> tile_of;
+  unsorted.resize_at_least(count);
+  tile_of.resize_at_least(count);
   parallel_for(count, [&](std::size_t k) {
     // in the order of the last call, if there is one: it is nearly sorted
     const std::size_t index = reuse_order ? index_[k] : k;
     if (reuse_order && k + ahead < count)
       source.prefetch(index_[k + ahead]);
     const Vec3 p = source.position(index);
-    unsorted_[k] = {p.x(), p.y(), p.z(), static_cast<std::uint32_t>(index)};
-    tile_of_[k] = static_cast<std::uint32_t>(local_tile(find.tile(p.x(), p.y())));
+    unsorted.data()[k] = {p.x(), p.y(), p.z(), static_cast<std::uint32_t>(index)};
+    tile_of.data()[k] = static_cast<std::uint32_t>(local_tile(find.tile(p.x(), p.y())));
   });
 
-  counting_sort(tile_of_, tiles, first_,
-                [&](std::size_t k, std::size_t position) { sorted_[position] = unsorted_[k]; });
+  sorted.resize_at_least(count);
+  counting_sort(std::span(tile_of.data(), count), tiles, first_,
+                [&](std::size_t k, std::size_t position) { sorted.data()[position] = unsorted.data()[k]; });
+  unsorted = {};
+  tile_of = {};
 
   for (auto* const coordinates : {&x_, &y_, &z_})
     resize_scratch(*coordinates, count + NearSources::max_lanes);
@@ -83,19 +89,25 @@ void SortedParticles::sort_source(const Source& source, const ShearingBox& box, 
   parallel_for(
       tiles,
       [&](std::size_t t) {
-        std::sort(sorted_.begin() + first_[t], sorted_.begin() + first_[t + 1], [&](const Entry& a, const Entry& b) {
+        std::sort(sorted.data() + first_[t], sorted.data() + first_[t + 1], [&](const Entry& a, const Entry& b) {
           return a.z != b.z ? a.z < b.z : source.id(a.index) < source.id(b.index);
         });
       },
       16);
   parallel_for(count, [&](std::size_t k) {
-    const Entry& p = sorted_[k];
+    const Entry& p = sorted.data()[k];
     x_[k] = p.x;
     y_[k] = p.y;
     z_[k] = p.z;
     mass_[k] = static_cast<float>(source.mass(p.index) / mass_unit_);
     index_[k] = p.index;
   });
+}
+
+void SortedParticles::release() {
+  for (auto* const coordinates : {&x_, &y_, &z_})
+    *coordinates = std::vector<double>();
+  mass_ = std::vector<float>();
 }
 
 } // namespace keeler::gravity

@@ -102,6 +102,9 @@ public:
 
   double mass_unit() const { return mass_unit_; } ///< the mean mass, kg
 
+  /// Releases the memory of positions and masses. The order is kept: the next sort() begins with it.
+  void release();
+
 private:
   struct Entry {
     double x, y, z;
@@ -114,11 +117,10 @@ private:
   }
   template<class Source> void sort_source(const Source& source, const ShearingBox& box, const TileColumns& columns);
 
-  std::vector<Entry> unsorted_, sorted_; // kept for their memory
   Tiling tiling_;
   std::size_t first_tile_ = 0;   // of the columns given to sort()
   std::size_t tiles_behind_ = 0; // from that tile to the end of the box
-  std::vector<std::uint32_t> tile_of_, first_, index_;
+  std::vector<std::uint32_t> first_, index_;
   std::vector<double> x_, y_, z_;
   std::vector<float> mass_;
   double mass_unit_ = 1.0;

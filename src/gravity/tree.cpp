@@ -296,7 +296,8 @@ void TreeSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accel
   const std::vector<Group> groups = make_groups(tree_.cells());
   const OpeningRule rule = opening_rule(opening_angle_, tree_.boxes()[0], shifts);
   const double strength = problem.newton_g * tree_.mass_unit();
-  std::vector<Vec3> total = far_accelerations<float>(problem, offset, images, tree_.particles(), set_);
+  std::vector<Vec3> total =
+      far_accelerations<float>(problem, offset, images, tree_.particles(), tree_.particles(), set_);
   std::vector<Momentum> gained(groups.size());
   parallel_for(
       groups.size(),

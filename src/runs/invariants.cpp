@@ -1,11 +1,12 @@
 #include "invariants.hpp"
 
+#include "reference_forces.hpp"
+
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/forces/self_gravity.hpp>
-#include <keeler/gravity/direct.hpp>
 #include <keeler/particles/order.hpp>
 
 #include <fmt/format.h>
@@ -205,27 +206,9 @@ std::string fault_of_sums(const BeforeStep& before, const simulation::Simulation
   return {};
 }
 
-double force_tolerance(const GravitySettings& settings) {
-  using Solver = GravitySettings::Solver;
-  switch (settings.solver) {
-  case Solver::direct:
-    return 1e-4; // one ring of images and the far field: docs/theory/gravity.md
-  case Solver::tree: {
-    const double relative = settings.opening_angle / 0.6; // docs/dev/gravity.md
-    return 1e-3 * relative * relative * relative * relative + 1e-4;
-  }
-  case Solver::fft:
-  case Solver::automatic:
-    return settings.force_error;
-  default:
-    return 0.0;
-  }
-}
-
 std::string fault_of_forces(const Scene& scene, const forces::Boundary& boundary,
                             const simulation::SimulationState& state) {
   constexpr std::size_t sampled = 32;
-  constexpr double one_ring_suffices = 1e-3; // the error of one ring, 3e-5 (docs/theory/gravity.md), is negligible then
   const double tolerance = scene.gravity ? force_tolerance(*scene.gravity) : 0.0;
   const std::size_t count = state.particles.size();
   if (tolerance == 0.0 || count == 0)
@@ -238,14 +221,10 @@ std::string fault_of_forces(const Scene& scene, const forces::Boundary& boundary
   std::vector<std::size_t> sample;
   for (std::size_t k = 0; k < std::min(sampled, count); ++k)
     sample.push_back(count <= sampled ? k : static_cast<std::size_t>(random.uniform() * static_cast<double>(count)));
-  // solvers that sum over pairs are compared with two rings, so that their truncation of the images is tested too
-  const bool pairs = scene.gravity->solver == GravitySettings::Solver::direct ||
-                     scene.gravity->solver == GravitySettings::Solver::tree;
-  gravity::ImageSettings images = {.rings = pairs || tolerance < one_ring_suffices ? 2 : 1};
-  if (pairs && !scene.gravity->images.far)
+  gravity::ImageSettings images = reference_images(*scene.gravity);
+  if (sums_over_pairs(*scene.gravity) && !scene.gravity->images.far)
     images = scene.gravity->images;
-  const std::vector<Vec3> exact =
-      sampled_accelerations(problem, sample, images, choose_instruction_set(), gravity::Precision::single_precision);
+  const std::vector<Vec3> exact = reference_forces(problem, sample, *scene.gravity, images);
   double errors = 0.0, squares = 0.0, worst = 0.0, mass = 0.0;
   std::size_t worst_at = sample.front();
   for (std::size_t k = 0; k < sample.size(); ++k) {

@@ -61,8 +61,4 @@ std::string fault_of_forces(const Scene& scene, const forces::Boundary& boundary
                             const simulation::SimulationState& state);
 inline constexpr double forces_factor = 4.0;
 
-/// Returns the relative rms error that a solver's settings imply; 0 for the mesh alone and for radial waves, which do
-/// not approximate the sum over pairs.
-double force_tolerance(const GravitySettings& settings);
-
 } // namespace keeler::runs

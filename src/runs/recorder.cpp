@@ -1,16 +1,15 @@
 #include "recorder.hpp"
 
 #include "invariants.hpp"
+#include "reference_forces.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/json_of_files.hpp>
-#include <keeler/core/simd.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/diagnostics/force_error.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/forces/self_gravity.hpp>
-#include <keeler/gravity/direct.hpp>
 #include <keeler/gravity/near_image_count.hpp>
 #include <keeler/io/checkpoint.hpp>
 #include <keeler/io/checkpoint_folder.hpp>
@@ -30,11 +29,9 @@
 namespace keeler::runs {
 namespace {
 
-constexpr gravity::ImageSettings exact_images{.rings = 2};
-
 // Returns the number of particles of a force check: fewer in a long box, where each exact sum has thousands of images.
 std::size_t checked_particles(const ShearingBox& box, const gravity::ImageSettings& images) {
-  constexpr std::size_t max_count = 200, min_count = 8, images_of_square_box = 25;
+  constexpr std::size_t max_count = 128, min_count = 8, images_of_square_box = 25;
   return std::clamp(max_count * images_of_square_box / near_image_count(box, images), min_count, max_count);
 }
 
@@ -277,10 +274,10 @@ void Recorder::check_forces(const Simulation& simulation) {
     std::vector<double> masses;
     const gravity::GravityProblem problem =
         gravity_problem(simulation.boundary(), scene_.planet.orbital_frequency, positions, masses);
+    const gravity::ImageSettings images = reference_images(*scene_.gravity);
     const diagnostics::ForceSample sample =
-        diagnostics::draw_force_sample(problem, checked_particles(problem.box, exact_images), 0, 0.0);
-    const std::vector<Vec3> exact =
-        sampled_accelerations(problem, sample.targets, exact_images, choose_instruction_set());
+        diagnostics::draw_force_sample(problem, checked_particles(problem.box, images), 0, 0.0);
+    const std::vector<Vec3> exact = reference_forces(problem, sample.targets, *scene_.gravity, images);
     const diagnostics::ForceErrors errors =
         force_errors(sample, exact, simulation.state().forces.front().accelerations);
     ++c.count;

@@ -13,7 +13,7 @@
 namespace keeler::runs {
 namespace {
 
-constexpr double first_check = 5e-6;         // s per particle: assumed cost of the first force check
+constexpr double first_check = 2e-6;         // s per particle: assumed cost of the first force check
 constexpr double fraction_of_checks = 0.005; // of the wall time, for force checks; one more runs at the end
 constexpr double min_stop_timeout = 5.0;     // s
 

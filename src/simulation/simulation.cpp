@@ -280,6 +280,7 @@ void Simulation::accelerate(std::size_t f) {
   const Stopwatch watch(split_.forces[state_.forces[f].name]);
   std::vector<Vec3>& accelerations = state_.forces[f].accelerations;
   accelerations.resize(state_.particles.size());
+  drift_.release_contacts();
   forces_[f]->accelerate(boundary(), accelerations);
 }
 

@@ -150,6 +150,10 @@ public:
   const finders::Finder& finder() const; ///< the one in use, which may be the observer's
   DriftCosts costs() const;              ///< since construction
 
+  /// Releases what only the contacts of the last step needed: before forces are computed, which need memory of their
+  /// own.
+  void release_contacts();
+
   /// Releases memory that the next steps would need again: before a large allocation.
   void release();
 

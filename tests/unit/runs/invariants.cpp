@@ -1,6 +1,7 @@
 // The checks of `keeler run --check`: none fails in correct runs of all kinds, and each fails on a state that violates
 // its invariant.
 #include "invariants.hpp"
+#include "reference_forces.hpp"
 #include "step_check.hpp"
 
 #include "scenes.hpp"
