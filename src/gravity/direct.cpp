@@ -4,6 +4,7 @@
 #include "single.hpp"
 
 #include <keeler/core/parallel.hpp>
+#include <keeler/core/threads.hpp>
 #include <keeler/gravity/images.hpp>
 #include <keeler/particles/order.hpp>
 
@@ -95,7 +96,10 @@ std::vector<Vec3> near_attractions(const std::vector<PointSource>& sources, cons
   const bool single = precision == Precision::single_precision;
   const SingleSources single_sources = single ? in_single(sources) : SingleSources{};
   std::vector<Vec3> result(targets.size());
-  constexpr std::size_t block_size = TargetBlock::capacity;
+  // a sample has fewer targets than a block holds: then each thread has some
+  constexpr std::size_t capacity = TargetBlock::capacity, lanes = 16;
+  const std::size_t shared = targets.size() / static_cast<std::size_t>(threads());
+  const std::size_t block_size = std::min(capacity, shared / lanes * lanes + lanes);
   parallel_for((targets.size() + block_size - 1) / block_size,
                [&](std::size_t block) {
                  const std::size_t first = block * block_size;
