@@ -26,6 +26,7 @@
 #include <keeler/scene/load.hpp>
 #include <keeler/scene/patch_scale.hpp>
 
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -74,7 +75,8 @@ PythonSnapshot tile(const PythonSnapshot& snapshot, std::size_t nx, std::size_t 
 
 PythonSnapshot from_arrays(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
                            const Doubles& positions, const std::optional<Doubles>& velocities, const Doubles& radii,
-                           const std::optional<Doubles>& masses, const std::optional<Doubles>& spins, bool relaxed) {
+                           const std::optional<Doubles>& masses, const std::optional<Doubles>& spins, bool relaxed,
+                           double shear_offset) {
   io::ParticleTable table;
   table.file = "the arrays";
   const auto count = positions.ndim() > 0 ? static_cast<std::size_t>(positions.shape(0)) : 0;
@@ -91,6 +93,10 @@ PythonSnapshot from_arrays(const std::string& text, const std::string& name, con
   return make_interruptibly([&] {
     const scene::TableScene of = scene::parse_table_scene(text, name, overrides);
     Patch patch = initial_conditions::patch_from_table(table, of);
+    if (!(shear_offset >= 0.0 && shear_offset < patch.box.size_y))
+      throw UsageError(fmt::format("shear_offset is {:g} m; give one from 0 to the box's length along the orbit, {:g} m",
+                                   shear_offset, patch.box.size_y));
+    patch.offset = shear_offset;
     if (relaxed)
       initial_conditions::relax(patch);
     cells::require_no_overlap(patch, table.file);
@@ -167,6 +173,10 @@ void bind_snapshot(py::module_& module) {
       .def_property_readonly("box", [](Self self) { return std::pair(self.patch.box.size_x, self.patch.box.size_y); })
       .def_property_readonly("shear_offset", [](Self self) { return self.patch.offset; })
       .def_property_readonly("orbital_frequency", [](Self self) { return self.patch.orbital_frequency; })
+      .def_property_readonly("frequency_ratios",
+                             [](Self self) {
+                               return std::pair(self.patch.frequencies.kappa, self.patch.frequencies.nu);
+                             })
       .def_property_readonly("time_orbits", [](Self self) { return self.patch.time_orbits; })
       .def_readonly("scene", &PythonSnapshot::scene)
       .def_readonly("is_a_start", &PythonSnapshot::is_a_start)
@@ -186,7 +196,8 @@ void bind_snapshot(py::module_& module) {
   module.def("summary_quantities", [] { return described(runs::summary_quantities()); });
   module.def("analyze", &analyze_path, py::arg("path"), py::arg("since"), py::arg("until"));
   module.def("from_arrays", &from_arrays, py::arg("text"), py::arg("name"), py::arg("overrides"), py::arg("positions"),
-             py::arg("velocities"), py::arg("radii"), py::arg("masses"), py::arg("spins"), py::arg("relax"));
+             py::arg("velocities"), py::arg("radii"), py::arg("masses"), py::arg("spins"), py::arg("relax"),
+             py::arg("shear_offset"));
 }
 
 } // namespace keeler::python

@@ -17,7 +17,8 @@ A ring in a few lines::
 
 Contents:
 
-- ``Simulation``: a patch that runs in memory. ``load``, ``resume`` and ``from_arrays`` make one from existing data.
+- ``Simulation``: a patch that runs in memory. ``load``, ``resume``, ``from_arrays`` and ``from_rebound`` make one
+  from existing data; ``to_rebound`` takes its particles to REBOUND.
 - ``Snapshot``: a patch at one time. ``generate``, ``tile``, ``start_from_arrays`` make one; ``read`` reads one.
 - ``Run``: the folder of a run, from ``run`` or ``read(folder)``: series, snapshots, summary. ``sweep`` makes many runs.
 - ``analyze()`` of each of these returns ``Numbers``; ``quantities`` lists their units and meanings.
@@ -62,6 +63,7 @@ _border.guard(_core)
 from . import scenes
 from .errors import Error, InvariantError, IoError, RunError, UsageError
 from .numbers import Numbers, Quantity, quantities
+from .rebound import from_rebound, to_rebound
 from .runs import Run, program, read, render, run, sweep
 from .simulation import ELEMENTS, Simulation, from_arrays, load, resume
 from .snapshots import Picture, Snapshot, generate, start_from_arrays, tile
@@ -85,6 +87,7 @@ __all__ = [
     "UsageError",
     "add_restitution_law",
     "from_arrays",
+    "from_rebound",
     "generate",
     "load",
     "program",
@@ -98,6 +101,7 @@ __all__ = [
     "sweep",
     "threads",
     "tile",
+    "to_rebound",
 ]
 
 

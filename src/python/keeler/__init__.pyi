@@ -174,6 +174,7 @@ def from_arrays(
     spins: ArrayLike | None = None,
     *,
     relax: bool = False,
+    shear_offset: float = 0.0,
     **overrides: Any,
 ) -> Simulation: ...
 def start_from_arrays(
@@ -185,8 +186,19 @@ def start_from_arrays(
     spins: ArrayLike | None = None,
     *,
     relax: bool = False,
+    shear_offset: float = 0.0,
     **overrides: Any,
 ) -> Snapshot: ...
+def from_rebound(
+    sim: Any,
+    scene: _Scene | None = None,
+    *,
+    units: dict[str, float] | None = None,
+    restitution: Callable[[Any, float], float] | None = None,
+    relax: bool = False,
+    **overrides: Any,
+) -> Simulation: ...
+def to_rebound(state: Simulation | Snapshot | _Path, rebound_simulation: Any = None) -> dict[str, _Floats]: ...
 def generate(scene: _Scene, *, clumped: bool = False, **overrides: Any) -> Snapshot: ...
 def tile(snapshot: Snapshot | _Path, nx: int, ny: int) -> Snapshot: ...
 def read(path: _Path) -> Snapshot | Run: ...

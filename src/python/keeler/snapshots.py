@@ -117,12 +117,15 @@ def tile(snapshot, nx, ny):
     return snapshot.tile(nx, ny)
 
 
-def start_from_arrays(scene, positions, radii, velocities=None, masses=None, spins=None, *, relax=False, **overrides):
+def start_from_arrays(
+    scene, positions, radii, velocities=None, masses=None, spins=None, *, relax=False, shear_offset=0.0, **overrides
+):
     """Returns an initial state with given particles, as a Snapshot in the scene's box.
 
     positions (N, 3) m, velocities (N, 3) m/s or None (circular orbits), radii (N,) m or one number, masses (N,) kg or
     one number or None (from the scene's density), inertial spins (N, 3) rad/s if the scene has friction. Particle k
-    gets the id k. ``relax`` moves overlapping particles apart. Warns (UserWarning) of a state unlike any ring:
+    gets the id k. ``relax`` moves overlapping particles apart. ``shear_offset`` (m, from 0 to L_y) is that of the box, as
+    of a Snapshot. Warns (UserWarning) of a state unlike any ring:
     velocities without the shear, tables in km. Raises UsageError, naming the row, for invalid particles and for
     masked entries; InvariantError for overlaps.
     """
@@ -131,7 +134,11 @@ def start_from_arrays(scene, positions, radii, velocities=None, masses=None, spi
     text, scene_name = scenes.source(scene)
     given = {"positions": positions, "velocities": velocities, "radii": radii, "masses": masses, "spins": spins}
     arrays = [_arguments.doubles(array, name) for name, array in given.items()]
-    make = functools.partial(_core.from_arrays, text, scene_name, scenes.overrides_of(overrides), *arrays, relax)
+    try:
+        offset = float(shear_offset)
+    except (TypeError, ValueError, OverflowError):
+        raise UsageError(f"shear_offset is {_arguments.shown(shear_offset)}; give a length in m") from None
+    make = functools.partial(_core.from_arrays, text, scene_name, scenes.overrides_of(overrides), *arrays, relax, offset)
     start = scenes.as_arguments(make)
     warn(start.start_doubts())
     return Snapshot(start, "the arrays")
