@@ -1,4 +1,4 @@
-// keeler convert: writes snapshots and checkpoints as CSV or for ParaView.
+// keeler convert: writes the particles of snapshots, checkpoints and tables in the formats of other programs.
 #include "command.hpp"
 #include "common_options.hpp"
 #include "print.hpp"
@@ -29,16 +29,19 @@ struct ConvertOptions {
   std::optional<std::string> output;
   bool force = false;
 
-  std::string ending() const { return "." + format; }
+  const io::TableFormat& table_format() const { return io::table_format(format); }
 };
 
-Patch patch_in(const fs::path& file) {
-  switch (io::describe_file(file).kind) {
+io::ParticleTable table_in(const fs::path& file) {
+  const std::optional<io::FileKind> kind = io::kind_of(file);
+  if (!kind)
+    return io::read_particle_table(file);
+  switch (*kind) {
   case io::FileKind::snapshot:
-    return runs::load_newest_patch(file).patches.back();
+    return io::table_of(runs::load_newest_patch(file).patches.back());
   case io::FileKind::checkpoint: {
     runs::StoredRun run = runs::load_checkpoint(file);
-    return Simulation(run.scene, std::move(run.state)).patch();
+    return io::table_of(Simulation(run.scene, std::move(run.state)).patch());
   }
   case io::FileKind::contacts:
     break;
@@ -49,18 +52,17 @@ Patch patch_in(const fs::path& file) {
 
 // Converts one file and returns its time, in orbits.
 double convert_file(const fs::path& file, const fs::path& output, const ConvertOptions& options) {
-  const Patch patch = patch_in(file);
-  if (options.format == "csv")
-    io::write_particle_table(output, patch);
-  else
-    io::write_vtp(output, patch);
-  return patch.time_orbits;
+  const io::ParticleTable table = table_in(file);
+  options.table_format().write(output, table);
+  return table.frame.time_orbits;
 }
 
 void convert_one(const ConvertOptions& options) {
   const fs::path file(options.path);
-  const fs::path output = options.output ? output_named(*options.output)
-                                         : output_beside(file, fs::path(file).replace_extension(options.ending()));
+  const fs::path output = options.output
+                              ? output_named(*options.output)
+                              : output_beside(file, fs::path(file).replace_extension(options.table_format().ending));
+  refuse_own_source(output, file);
   require_new_file(output, options.force, "the result");
   convert_file(file, output, options);
   print_written(output);
@@ -73,7 +75,7 @@ void convert_run(const ConvertOptions& options) {
   require_folder_name(folder);
   const fs::path list = folder / "snapshots.pvd";
   const auto result_of = [&](const fs::path& snapshot) {
-    return folder / snapshot.filename().replace_extension(options.ending());
+    return folder / snapshot.filename().replace_extension(options.table_format().ending);
   };
   files::require_writable_folder(files::folder_of(folder), folder);
   std::error_code error;
@@ -87,7 +89,7 @@ void convert_run(const ConvertOptions& options) {
     throw_if_interrupted();
     const fs::path result = result_of(snapshot);
     instants.push_back({convert_file(snapshot, result, options), result.filename().string()});
-    if (options.format == "csv")
+    if (options.format != "vtp")
       print("{}\n", result.string());
   }
   if (options.format == "vtp") {
@@ -100,23 +102,29 @@ void convert_run(const ConvertOptions& options) {
 
 void add_convert(CLI::App& program, Action& action) {
   const auto options = std::make_shared<ConvertOptions>();
-  CLI::App& command = *program.add_subcommand("convert", "write particles as CSV, or for ParaView");
+  CLI::App& command = *program.add_subcommand("convert", "write particles for other programs");
   command
-      .add_option("FILE|DIR", options->path, "a snapshot or a checkpoint, or the folder of a run: all its snapshots")
+      .add_option("FILE|DIR", options->path,
+                  "a snapshot, a checkpoint or a table of particles (CSV, HDF5, npz, extended XYZ, GADGET), or the "
+                  "folder of a run: all its snapshots")
       ->required()
       ->type_name("");
-  one_of(command.add_option("--to", options->format,
-                            "csv: one row per particle; vtp: one point per particle, for ParaView"),
-         {"csv", "vtp"})
-      .required();
+  std::vector<std::string> names;
+  std::string about;
+  for (const io::TableFormat& format : io::table_formats()) {
+    names.emplace_back(format.name);
+    about += fmt::format("{}{}: {}", about.empty() ? "" : "; ", format.name, format.about);
+  }
+  one_of(command.add_option("--to", options->format, about), names).required();
   command
       .add_option("-o,--output", options->output,
                   "the file to write (default: the source's name with the new ending), or for a run the folder "
-                  "(default: csv or vtp in the run's folder)")
+                  "(default: one named as the format, in the run's folder)")
       ->type_name("FILE|DIR");
   command.add_flag("--force", options->force, "replace files that exist");
   examples_of(command,
-              {"keeler convert wakes --to vtp", "keeler convert wakes/snap_000030.hdf --to csv -o particles.csv"});
+              {"keeler convert wakes --to vtp", "keeler convert wakes/snap_000030.hdf --to csv -o particles.csv",
+               "keeler convert others.xyz --to npz"});
   command.callback([options, &action] {
     action = [options] {
       return unless_stopped("stopped before all was written (on request); the written files are complete", [&] {

@@ -183,8 +183,10 @@ void add_generate(CLI::App& program, Action& action, const std::vector<std::stri
                   "give up if wakes have not settled by then (default: 30)")
       ->check(number_between(0.0, 200.0, "a number of orbits"))
       ->needs(&clumped);
-  CLI::Option& table = *command.add_option("--from-table", options->table,
-                                           "take the particles from this table (CSV or HDF5), in the scene's box");
+  CLI::Option& table =
+      *command.add_option("--from-table", options->table,
+                          "take the particles from this table (CSV, HDF5, npz, extended XYZ or GADGET), in the "
+                          "scene's box");
   table.excludes(&clumped)->type_name("FILE");
   command.add_flag("--relax", options->relax, "move overlapping particles of the table apart")->needs(&table);
   command.add_flag("--force", options->force, "replace the file if it exists");

@@ -37,13 +37,35 @@ void require_fitting(const io::ParticleTable& table, const scene::TableScene& of
                     table.file));
 }
 
+// What the table states of the patch must be the scene's.
+void require_frame(const io::ParticleTable& table, const Scene& scene) {
+  constexpr double tolerance = 1e-6; // of what other programs round
+  const auto differ = [](double stated, double wanted) { return std::fabs(stated - wanted) > tolerance * wanted; };
+  const io::TableFrame& frame = table.frame;
+  if (frame.has_box() && (differ(frame.size_x, scene.size_x) || differ(frame.size_y, scene.size_y)))
+    throw UsageError(
+        fmt::format("{}: it is of a box of {:g} m x {:g} m, and the scene's is {:g} m x {:g} m; set box.size",
+                    table.file, frame.size_x, frame.size_y, scene.size_x, scene.size_y));
+  if (frame.orbital_frequency != 0.0 && differ(frame.orbital_frequency, scene.planet.orbital_frequency))
+    throw UsageError(
+        fmt::format("{}: its velocities are for Omega = {:g} rad/s, and the scene's planet has {:g}; change "
+                    "[planet]",
+                    table.file, frame.orbital_frequency, scene.planet.orbital_frequency));
+  if (!(frame.shear_offset >= 0.0 && frame.shear_offset < scene.size_y))
+    throw UsageError(
+        fmt::format("{}: the shear offset is {:g} m; give one from 0 to the box's length along the orbit, {:g} m",
+                    table.file, frame.shear_offset, scene.size_y));
+}
+
 } // namespace
 
 Patch patch_from_table(const io::ParticleTable& table, const scene::TableScene& of) {
   assert(table.positions.size() == table.size() && table.radii.size() == table.size());
   require_fitting(table, of);
   const Scene& scene = of.scene;
+  require_frame(table, scene);
   Patch patch;
+  patch.offset = table.frame.shear_offset;
   patch.frequencies = scene.planet.frequencies;
   patch.orbital_frequency = scene.planet.orbital_frequency;
   patch.box = {scene.size_x, scene.size_y, scene.planet.frequencies.shear(), 0.0};

@@ -10,10 +10,11 @@
 
 namespace keeler::initial_conditions {
 
-/// Returns the particles of a table in the scene's box, with a shear offset of zero. Particle k of the table gets the
-/// id k. Missing masses follow from the scene's density, missing velocities from circular orbits. Throws
-/// UsageError, naming the row, for an invalid particle, one farther outside the box than its epicycle explains, or
-/// without a mass, and for spins if the scene has no friction; InvariantError for heaps of overlapping particles.
+/// Returns the particles of a table in the scene's box, with the shear offset that the table states (else zero).
+/// Particle k of the table gets the id k. Missing masses follow from the scene's density, missing velocities from
+/// circular orbits. Throws UsageError, naming the row, for an invalid particle, one farther outside the box than its
+/// epicycle explains, or without a mass, for spins if the scene has no friction, and for a table that states another
+/// box or Omega; InvariantError for heaps of overlapping particles.
 Patch patch_from_table(const io::ParticleTable& table, const scene::TableScene& scene);
 
 /// Result of relax().

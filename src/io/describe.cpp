@@ -4,10 +4,16 @@
 #include "sealed_file.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/files/descriptor.hpp>
 
 #include <fmt/format.h>
 
 #include <cassert>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include <fcntl.h>
 
 namespace keeler::io {
 
@@ -102,22 +108,41 @@ FileDescription describe_table(const hdf5::Handle& image, FileKind kind, const c
   return description;
 }
 
-FileDescription description_in(const hdf5::Handle& image, const std::filesystem::path& file) {
+std::optional<FileKind> kind_in(const hdf5::Handle& image) {
+  if (has_format(image, checkpoint_format))
+    return FileKind::checkpoint;
+  if (!hdf5::exists(image, "Code"))
+    return std::nullopt;
+  const hdf5::Handle code = hdf5::open_group(image, "Code");
+  if (has_format(code, snapshot_format))
+    return FileKind::snapshot;
+  return has_format(code, contacts_format) ? std::optional(FileKind::contacts) : std::nullopt;
+}
+
+// Returns read(), whose IoErrors get the name of the file.
+template<class Read> auto naming(const std::filesystem::path& file, const Read& read) {
   try {
-    if (has_format(image, checkpoint_format))
-      return describe_checkpoint(image);
-    if (hdf5::exists(image, "Code")) {
-      const hdf5::Handle code = hdf5::open_group(image, "Code");
-      if (has_format(code, snapshot_format))
-        return describe_table(image, FileKind::snapshot, particles_group,
-                              {"Header", "RingBox", "Code", clumping_group});
-      if (has_format(code, contacts_format))
-        return describe_table(image, FileKind::contacts, "Contacts", {"Contacts", "Code"});
-    }
+    return read();
   } catch (const IoError& error) {
     throw IoError(fmt::format("cannot read '{}': {}", file.string(), error.what()));
   }
-  throw IoError(fmt::format("'{}' is no snapshot, checkpoint or file of contacts of Keeler", file.string()));
+}
+
+FileDescription description_in(const hdf5::Handle& image, const std::filesystem::path& file) {
+  const std::optional<FileKind> kind = naming(file, [&] { return kind_in(image); });
+  if (!kind)
+    throw IoError(fmt::format("'{}' is no snapshot, checkpoint or file of contacts of Keeler", file.string()));
+  return naming(file, [&] {
+    switch (*kind) {
+    case FileKind::checkpoint:
+      return describe_checkpoint(image);
+    case FileKind::snapshot:
+      return describe_table(image, *kind, particles_group, {"Header", "RingBox", "Code", clumping_group});
+    case FileKind::contacts:
+      break;
+    }
+    return describe_table(image, FileKind::contacts, "Contacts", {"Contacts", "Code"});
+  });
 }
 
 } // namespace
@@ -125,6 +150,17 @@ FileDescription description_in(const hdf5::Handle& image, const std::filesystem:
 FileDescription describe_file(const std::filesystem::path& file) {
   const auto read = [&](const hdf5::Handle& image) { return description_in(image, file); };
   return read_content(file, read);
+}
+
+std::optional<FileKind> kind_of(const std::filesystem::path& file) {
+  constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
+  if (!has_seal(file)) {
+    std::string start(signature.size(), '\0');
+    files::Descriptor(file, O_RDONLY).read_at(0, std::as_writable_bytes(std::span(start)));
+    if (start != signature)
+      return std::nullopt;
+  }
+  return read_content(file, [&](const hdf5::Handle& image) { return naming(file, [&] { return kind_in(image); }); });
 }
 
 bool is_sealed(const std::filesystem::path& file) {

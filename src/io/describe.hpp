@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,10 @@ struct FileDescription {
 
 /// Describes a snapshot, a checkpoint or a contact file. Throws IoError for damage and for any other kind of file.
 FileDescription describe_file(const std::filesystem::path& file);
+
+/// Returns the kind of a file; none if it is another one (HDF5 of another program, a text, ...). Throws IoError when it
+/// is damaged or cannot be read.
+std::optional<FileKind> kind_of(const std::filesystem::path& file);
 
 /// True if the file has a seal. Throws IoError when the seal does not match, or the file cannot be read.
 bool is_sealed(const std::filesystem::path& file);

@@ -1,12 +1,13 @@
 #include <keeler/io/vtp.hpp>
 
+#include "table_columns.hpp"
+
 #include <keeler/files/files.hpp>
 #include <keeler/files/new_file.hpp>
 
 #include <fmt/format.h>
 
 #include <bit>
-#include <cassert>
 #include <cstdint>
 #include <numeric>
 #include <span>
@@ -48,25 +49,19 @@ private:
   std::uint64_t size_ = 0;
 };
 
-std::vector<Vec3> in_si(std::vector<Vec3> rates, double orbital_frequency) {
-  for (Vec3& rate : rates)
-    rate *= orbital_frequency;
-  return rates;
-}
-
 void write_text(files::NewFile& out, std::string_view text) {
   out.write(std::as_bytes(std::span(text)));
 }
 
 } // namespace
 
-void write_vtp(const std::filesystem::path& file, const Patch& patch) {
-  const std::vector<Vec3> velocities = in_si(patch.velocities, patch.orbital_frequency);
-  const std::vector<Vec3> spins = in_si(patch.spins, patch.orbital_frequency);
-  assert(patch.orbital_frequency > 0.0);
-  std::vector<std::int64_t> numbers(patch.size() + 1); // indices of points; shifted by one, ends of the cells
+void write_vtp(const std::filesystem::path& file, const ParticleTable& table) {
+  std::vector<std::int64_t> numbers(table.size() + 1); // indices of points; shifted by one, ends of the cells
   std::iota(numbers.begin(), numbers.end(), std::int64_t{0});
   const std::vector<std::int64_t> points(numbers.begin(), numbers.end() - 1), ends(numbers.begin() + 1, numbers.end());
+  std::vector<std::uint64_t> ids(table.size());
+  for (std::size_t k = 0; k < ids.size(); ++k)
+    ids[k] = id_of(table, k);
 
   AppendedArrays arrays;
   std::string xml = "<?xml version=\"1.0\"?>\n"
@@ -74,17 +69,19 @@ void write_vtp(const std::filesystem::path& file, const Patch& patch) {
                     "<PolyData>\n";
   xml += fmt::format("<FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">"
                      "{}</DataArray></FieldData>\n",
-                     patch.time_orbits);
+                     table.frame.time_orbits);
   xml += fmt::format("<Piece NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
                      "NumberOfPolys=\"0\">\n<PointData>\n",
-                     patch.size());
-  xml += arrays.add("Float64", "Velocities", 3, "m/s", velocities);
-  xml += arrays.add("Float64", "Masses", 1, "kg", patch.masses);
-  xml += arrays.add("UInt64", "ParticleIDs", 1, "", patch.ids);
-  xml += arrays.add("Float64", "Radius", 1, "m", patch.radii);
-  if (!spins.empty())
-    xml += arrays.add("Float64", "Spins", 3, "rad/s", spins);
-  xml += "</PointData>\n<Points>\n" + arrays.add("Float64", "Points", 3, "m", patch.positions);
+                     table.size());
+  if (!table.velocities.empty())
+    xml += arrays.add("Float64", "Velocities", 3, "m/s", table.velocities);
+  if (!table.masses.empty())
+    xml += arrays.add("Float64", "Masses", 1, "kg", table.masses);
+  xml += arrays.add("UInt64", "ParticleIDs", 1, "", ids);
+  xml += arrays.add("Float64", "Radius", 1, "m", table.radii);
+  if (!table.spins.empty())
+    xml += arrays.add("Float64", "Spins", 3, "rad/s", table.spins);
+  xml += "</PointData>\n<Points>\n" + arrays.add("Float64", "Points", 3, "m", table.positions);
   xml += "</Points>\n<Verts>\n" + arrays.add("Int64", "connectivity", 1, "", points);
   xml += arrays.add("Int64", "offsets", 1, "", ends);
   xml += "</Verts>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";

@@ -2,7 +2,7 @@
 // such files by time.
 #pragma once
 
-#include <keeler/particles/patch.hpp>
+#include <keeler/io/particle_table.hpp>
 
 #include <filesystem>
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace keeler::io {
 
-/// Writes one vertex per particle, in the order of ids, with the arrays of a snapshot in SI: Velocities, Masses,
-/// ParticleIDs, Radius and, for rough particles, Spins. TimeValue is the time in orbits. Complete or not at all. Throws
-/// IoError.
-void write_vtp(const std::filesystem::path& file, const Patch& patch);
+/// Writes one vertex per particle, in the order of the table, with the arrays of a snapshot in SI: Velocities, Masses,
+/// ParticleIDs, Radius and Spins, as far as the table has them. TimeValue is the time in orbits. Complete or not at
+/// all. Throws IoError.
+void write_vtp(const std::filesystem::path& file, const ParticleTable& table);
 
 struct VtpInstant {
   double time_orbits = 0.0;

@@ -26,7 +26,6 @@
 #include <keeler/scene/load.hpp>
 #include <keeler/scene/patch_scale.hpp>
 
-#include <fmt/format.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -90,13 +89,10 @@ PythonSnapshot from_arrays(const std::string& text, const std::string& name, con
     table.masses = numbers_from(*masses, count, "masses");
   if (spins)
     table.spins = vectors_from(*spins, count, "spins");
+  table.frame.shear_offset = shear_offset;
   return make_interruptibly([&] {
     const scene::TableScene of = scene::parse_table_scene(text, name, overrides);
     Patch patch = initial_conditions::patch_from_table(table, of);
-    if (!(shear_offset >= 0.0 && shear_offset < patch.box.size_y))
-      throw UsageError(fmt::format("shear_offset is {:g} m; give one from 0 to the box's length along the orbit, {:g} m",
-                                   shear_offset, patch.box.size_y));
-    patch.offset = shear_offset;
     if (relaxed)
       initial_conditions::relax(patch);
     cells::require_no_overlap(patch, table.file);
@@ -173,10 +169,9 @@ void bind_snapshot(py::module_& module) {
       .def_property_readonly("box", [](Self self) { return std::pair(self.patch.box.size_x, self.patch.box.size_y); })
       .def_property_readonly("shear_offset", [](Self self) { return self.patch.offset; })
       .def_property_readonly("orbital_frequency", [](Self self) { return self.patch.orbital_frequency; })
-      .def_property_readonly("frequency_ratios",
-                             [](Self self) {
-                               return std::pair(self.patch.frequencies.kappa, self.patch.frequencies.nu);
-                             })
+      .def_property_readonly(
+          "frequency_ratios",
+          [](Self self) { return std::pair(self.patch.frequencies.kappa, self.patch.frequencies.nu); })
       .def_property_readonly("time_orbits", [](Self self) { return self.patch.time_orbits; })
       .def_readonly("scene", &PythonSnapshot::scene)
       .def_readonly("is_a_start", &PythonSnapshot::is_a_start)

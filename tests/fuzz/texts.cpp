@@ -74,7 +74,7 @@ void read_table(std::string_view input, const std::filesystem::path& folder) {
   put(file, input);
   const Patch patch = initial_conditions::patch_from_table(io::read_particle_table(file),
                                                            scene::parse_table_scene(small_scene(), folder / "s.toml"));
-  io::write_particle_table(again, patch);
+  io::table_format("csv").write(again, io::table_of(patch));
   if (io::read_particle_table(again).radii != patch.radii)
     std::abort();
 }

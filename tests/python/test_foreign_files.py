@@ -307,7 +307,7 @@ class ForeignFiles(unittest.TestCase):
         self.assertIn(b"it lacks /Code, /RingBox, /Parameters. To start from its particles, write their x, y, z", done.stderr)
         done = keeler("generate", self.scene, "--from-table", gadget, "-o", self.folder / "none.hdf")
         self.assertEqual(done.returncode, 2)
-        self.assertIn(b"a snapshot of another program, not a table", done.stderr)
+        self.assertIn(b"it states no units; add UnitLength_in_cm", done.stderr)
         self.assertNotIn(b"--from", done.stderr)
         self.replace("Radius", lambda part, count: None)
         self.refused(4, "it lacks /PartType1/Radius")

@@ -119,9 +119,9 @@ TEST_CASE("a table of other columns is refused") {
           write_all(image, {"r", "x", "y"});
           hdf5::write_text_dataset(image, "z", "up");
         }) == ": z is not a one-dimensional array of numbers; write it as one");
-  CHECK(arrays([](Image image) { hdf5::create_group(image, "PartType1"); })
-            .find(": it is a snapshot of another program, not a table (it has no /RingBox that describes the patch); "
-                  "write x, y, z") == 0);
+  CHECK(arrays([](Image image) {
+          hdf5::create_group(image, "PartType1");
+        }).find(": it has groups PartTypeN and no /Header with BoxSize and units; add it, or write x, y, z") == 0);
   CHECK(arrays([](Image image) {
           for (const char* group : {"PartType1", "Code", "RingBox"})
             hdf5::create_group(image, group);
