@@ -119,30 +119,22 @@ std::optional<FileKind> kind_in(const hdf5::Handle& image) {
   return has_format(code, contacts_format) ? std::optional(FileKind::contacts) : std::nullopt;
 }
 
-// Returns read(), whose IoErrors get the name of the file.
-template<class Read> auto naming(const std::filesystem::path& file, const Read& read) {
+FileDescription description_in(const hdf5::Handle& image, const std::filesystem::path& file) {
   try {
-    return read();
+    if (has_format(image, checkpoint_format))
+      return describe_checkpoint(image);
+    if (hdf5::exists(image, "Code")) {
+      const hdf5::Handle code = hdf5::open_group(image, "Code");
+      if (has_format(code, snapshot_format))
+        return describe_table(image, FileKind::snapshot, particles_group,
+                              {"Header", "RingBox", "Code", clumping_group});
+      if (has_format(code, contacts_format))
+        return describe_table(image, FileKind::contacts, "Contacts", {"Contacts", "Code"});
+    }
   } catch (const IoError& error) {
     throw IoError(fmt::format("cannot read '{}': {}", file.string(), error.what()));
   }
-}
-
-FileDescription description_in(const hdf5::Handle& image, const std::filesystem::path& file) {
-  const std::optional<FileKind> kind = naming(file, [&] { return kind_in(image); });
-  if (!kind)
-    throw IoError(fmt::format("'{}' is no snapshot, checkpoint or file of contacts of Keeler", file.string()));
-  return naming(file, [&] {
-    switch (*kind) {
-    case FileKind::checkpoint:
-      return describe_checkpoint(image);
-    case FileKind::snapshot:
-      return describe_table(image, *kind, particles_group, {"Header", "RingBox", "Code", clumping_group});
-    case FileKind::contacts:
-      break;
-    }
-    return describe_table(image, FileKind::contacts, "Contacts", {"Contacts", "Code"});
-  });
+  throw IoError(fmt::format("'{}' is no snapshot, checkpoint or file of contacts of Keeler", file.string()));
 }
 
 } // namespace
@@ -160,7 +152,14 @@ std::optional<FileKind> kind_of(const std::filesystem::path& file) {
     if (start != signature)
       return std::nullopt;
   }
-  return read_content(file, [&](const hdf5::Handle& image) { return naming(file, [&] { return kind_in(image); }); });
+  const auto read = [&](const hdf5::Handle& image) {
+    try {
+      return kind_in(image);
+    } catch (const IoError& error) {
+      throw IoError(fmt::format("cannot read '{}': {}", file.string(), error.what()));
+    }
+  };
+  return read_content(file, read);
 }
 
 bool is_sealed(const std::filesystem::path& file) {

@@ -42,6 +42,30 @@ runs 0 convert "$work/again.hdf" --to csv
 runs 0 convert "$work/again.hdf" --to vtp
 read_back "$work/run/snap_000000.hdf" "$work/again.csv" "$work/again.vtp"
 
+# The formats of other programs: read by numpy, h5py, ASE and yt, and by Keeler, to the same particles and shear offset.
+# Only GADGET's places are rounded, when they are shifted by half of the box.
+offset() { h5dump -a /RingBox/shear_offset "$1" | grep -F '(0)'; }
+snapshot=$work/run/snap_000001.hdf
+for format in hdf5 npz xyz gadget; do
+  accepts "a run as $format" convert "$work/run" --to $format
+  runs 0 convert "$snapshot" --to $format -o "$work/table.$format"
+  runs 0 convert "$work/table.$format" --to csv -o "$work/table.csv" --force
+  if [ $format != gadget ]; then
+    diff <(cut -d, -f2- "$work/csv/snap_000001.csv") <(cut -d, -f2- "$work/table.csv") >"$work/read" || fail "$format: $(head -3 "$work/read")"
+  fi
+  runs 0 generate "$work/scene.toml" --from-table "$work/table.$format" -o "$work/table.hdf" --force
+  [ "$(offset "$work/table.hdf")" = "$(offset "$snapshot")" ] || fail "$format: the shear offset $(offset "$work/table.hdf")"
+  h5diff -d 1e-13 "$snapshot" "$work/table.hdf" /PartType1/Coordinates || fail "$format: places"
+  h5diff -p 5e-16 "$snapshot" "$work/table.hdf" /PartType1/Velocities || fail "$format: velocities"
+done
+/usr/bin/python3 -B "$source_dir/tests/cli/convert_others.py" "$snapshot" "$work/table" >"$work/read" 2>&1 || fail "others: $(cat "$work/read")"
+[ -e "$work/run/npz/snap_000002.npz" ] && [ -e "$work/run/gadget/snap_000002.hdf5" ] || fail "the names of a run's files"
+runs 0 convert "$work/rough/snap_000001.hdf" --to npz -o "$work/rough.npz"
+runs 0 convert "$work/rough.npz" --to csv -o "$work/spins.csv"
+diff <(cut -d, -f2- "$work/rough/snap_000001.csv") <(cut -d, -f2- "$work/spins.csv") >"$work/read" || fail "spins: $(head -3 "$work/read")"
+refuses "another box" "it is of a box of" generate "$work/scene.toml" --set box.size=[61.0,40.0] --from-table "$work/table.npz" -o "$work/new.hdf"
+refuses "another planet" "its velocities are for Omega" generate "$work/scene.toml" --set planet.preset='"saturn-b-ring"' --from-table "$work/table.npz" -o "$work/new.hdf"
+
 # nothing_new NAME: there are no new files
 nothing_new() { compgen -G "$work/new*" && fail "$1 left something"; }
 refuses "no format" "--to" convert "$work/run"
@@ -51,12 +75,13 @@ refuses "an existing folder" "add --force" convert "$work/run" --to vtp
 runs 0 convert "$work/run" --to vtp --force
 refuses_with 4 "no folder to write into" "create it, or name another" convert "$work/run" --to vtp -o "$work/new/a"
 nothing_new "no folder to write into"
-refuses_with 4 "no snapshot" "is no snapshot" convert "$work/scene.toml" --to csv -o "$work/new.csv"
-nothing_new "no snapshot"
+refuses "neither a snapshot nor a table" "scene.toml:2: " convert "$work/scene.toml" --to csv -o "$work/new.csv"
+nothing_new "neither a snapshot nor a table"
+refuses "its own source" "" convert "$work/again.csv" --to csv --force
 mkdir "$work/empty"
 refuses_with 4 "a folder without snapshots" "no snapshot in" convert "$work/empty" --to vtp
 [ "$(find "$work/empty" | wc -l)" -eq 1 ] || fail "a folder without snapshots got something"
-for format in csv vtp; do
+for format in csv vtp hdf5 npz xyz gadget; do
   (
     ulimit -f 4
     exec "$keeler" convert "$work/again.hdf" --to $format -o "$work/new.$format" >"$work/out" 2>"$work/err"
