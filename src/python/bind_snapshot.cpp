@@ -22,6 +22,8 @@
 #include <keeler/render/patch_picture.hpp>
 #include <keeler/runs/measured_part.hpp>
 #include <keeler/runs/measurement.hpp>
+#include <keeler/runs/moonlet_columns.hpp>
+#include <keeler/runs/series_columns.hpp>
 #include <keeler/runs/summary.hpp>
 #include <keeler/scene/load.hpp>
 #include <keeler/scene/patch_scale.hpp>
@@ -133,6 +135,32 @@ py::dict series(const fs::path& file) {
   return columns;
 }
 
+// Returns a dictionary from columns to (unit, meaning): of the tables of a run, or of measured numbers.
+py::dict column_quantities(bool of_run) {
+  using quantities::Quantity, quantities::Shape;
+  py::dict all;
+  const auto add = [&](const Quantity& quantity) {
+    for (const quantities::UnitSystem system : quantity.systems())
+      all[py::str(quantity.full_name(system))] =
+          py::make_tuple(std::string(unit_in(quantity.unit, system).text), quantity.meaning);
+  };
+  if (!of_run) {
+    for (const Quantity& quantity : runs::measured_quantities())
+      if (quantity.shape == Shape::vector)
+        for (const std::size_t axis : {0U, 1U, 2U})
+          add(quantity.along(axis));
+      else if (quantity.shape == Shape::number)
+        add(quantity);
+    return all;
+  }
+  for (const Quantity& quantity : runs::series_quantities())
+    add(quantity);
+  for (const runs::MoonletColumn& column : runs::moonlet_columns())
+    all[py::str(column.name)] = py::make_tuple(std::string(column.unit), std::string(column.meaning));
+  all["step"] = py::make_tuple(std::string("1"), std::string("steps done"));
+  return all;
+}
+
 void render(const PythonSnapshot& snapshot, const fs::path& file, const std::string& title, int width) {
   require_own_threads();
   const Unlocked unlocked;
@@ -187,6 +215,7 @@ void bind_snapshot(py::module_& module) {
   module.def("is_stream", &files::is_stream, py::arg("file"));
   module.def("read_series", &series, py::arg("file"));
   module.def("generate", &generate, py::arg("scene"), py::arg("clumped"));
+  module.def("column_quantities", &column_quantities, py::arg("of_run"));
   module.def("quantities", [] { return described(runs::measured_quantities()); });
   module.def("summary_quantities", [] { return described(runs::summary_quantities()); });
   module.def("analyze", &analyze_path, py::arg("path"), py::arg("since"), py::arg("until"));

@@ -59,11 +59,11 @@ for format in hdf5 npz xyz gadget; do
   h5diff -p 5e-16 "$snapshot" "$work/table.hdf" /PartType1/Velocities || fail "$format: velocities"
 done
 /usr/bin/python3 -B "$source_dir/tests/cli/convert_others.py" "$snapshot" "$work/table" >"$work/read" 2>&1 || fail "others: $(cat "$work/read")"
-[ -e "$work/run/npz/snap_000002.npz" ] && [ -e "$work/run/gadget/snap_000002.hdf5" ] || fail "the names of a run's files"
+for file in npz/snap_000002.npz gadget/snap_000002.hdf5; do [ -e "$work/run/$file" ] || fail "no $file"; done
 runs 0 convert "$work/rough/snap_000001.hdf" --to npz -o "$work/rough.npz"
 runs 0 convert "$work/rough.npz" --to csv -o "$work/spins.csv"
 diff <(cut -d, -f2- "$work/rough/snap_000001.csv") <(cut -d, -f2- "$work/spins.csv") >"$work/read" || fail "spins: $(head -3 "$work/read")"
-refuses "another box" "it is of a box of" generate "$work/scene.toml" --set box.size=[61.0,40.0] --from-table "$work/table.npz" -o "$work/new.hdf"
+refuses "another box" "it is of a box of" generate "$work/scene.toml" --set "box.size=[61.0,40.0]" --from-table "$work/table.npz" -o "$work/new.hdf"
 refuses "another planet" "its velocities are for Omega" generate "$work/scene.toml" --set planet.preset='"saturn-b-ring"' --from-table "$work/table.npz" -o "$work/new.hdf"
 
 # nothing_new NAME: there are no new files

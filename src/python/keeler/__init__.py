@@ -22,6 +22,7 @@ Contents:
 - ``Snapshot``: a patch at one time. ``generate``, ``tile``, ``start_from_arrays`` make one; ``read`` reads one.
 - ``Run``: the folder of a run, from ``run`` or ``read(folder)``: series, snapshots, summary. ``sweep`` makes many runs.
 - ``analyze()`` of each of these returns ``Numbers``; ``quantities`` lists their units and meanings.
+- ``Columns`` and ``Rows``: the tables of runs and sweeps; ``to_pandas()`` and ``to_xarray()`` where these are installed.
 - ``render``: a picture of any of them. ``add_restitution_law``: a user-defined law.
 - ``set_threads``, ``threads``: results are bitwise identical for any number of threads.
 - ``Error`` and its four kinds: ``UsageError``, ``InvariantError``, ``IoError``, ``RunError``.
@@ -67,12 +68,14 @@ from .rebound import from_rebound, to_rebound
 from .runs import Run, program, read, render, run, sweep
 from .simulation import ELEMENTS, Simulation, from_arrays, load, resume
 from .snapshots import Picture, Snapshot, generate, start_from_arrays, tile
+from .tables import Columns, Rows
 
 __version__ = _core.version()
 
 _atexit.register(_core.end_other_threads)  # the interpreter would end computing daemon threads inside C++
 
 __all__ = [
+    "Columns",
     "ELEMENTS",
     "Error",
     "InvariantError",
@@ -80,6 +83,7 @@ __all__ = [
     "Numbers",
     "Picture",
     "Quantity",
+    "Rows",
     "Run",
     "RunError",
     "Simulation",

@@ -8,13 +8,13 @@ import shutil
 import subprocess
 from pathlib import Path
 
-from . import _arguments, _core, _processes, numbers, scenes, snapshots
+from . import _arguments, _core, _processes, numbers, scenes, snapshots, tables
 from .errors import Error, InvariantError, IoError, RunError, UsageError
 
 
 class Run:
-    """The results in the folder of a run. ``series`` is a dictionary of arrays, one per column of series.csv, with
-    units in the names; ``snapshots`` is a list of Snapshots, each read on access; ``summary`` the Numbers of
+    """The results in the folder of a run. ``series`` are Columns: a dictionary of arrays, one per column of
+    series.csv, with units in the names; ``snapshots`` is a list of Snapshots, each read on access; ``summary`` the Numbers of
     summary.json (None while the run works); ``scene`` the resolved scene as text."""
 
     def __init__(self, folder):
@@ -32,12 +32,12 @@ class Run:
 
     @property
     def series(self):
-        return _core.read_series(self.folder / "series.csv")
+        return tables.Columns(_core.read_series(self.folder / "series.csv"))
 
     @property
     def moonlets(self):
         """The columns of moonlets.csv, as ``series``. Raises IoError if the scene has no moonlets."""
-        return _core.read_series(self.folder / "moonlets.csv")
+        return tables.Columns(_core.read_series(self.folder / "moonlets.csv"))
 
     @property
     def summary(self):
@@ -140,8 +140,8 @@ def sweep(grid, folder, *, jobs=None, quantities=()):
 
     ``quantities`` are names of numbers of ``analyze()``, as further columns of the tables.
 
-    Returns {"runs": rows of sweep.csv, "points": rows of points.csv} as lists of dictionaries, with numbers as floats
-    and unknown values as None. Raises UsageError for an invalid grid, RunError when runs failed (sweep.csv lists
+    Returns {"runs": rows of sweep.csv, "points": rows of points.csv} as Rows: lists of dictionaries, with numbers as
+    floats and unknown values as None. Raises UsageError for an invalid grid, RunError when runs failed (sweep.csv lists
     them).
     """
     folder = _arguments.path(folder, "sweep")
@@ -178,14 +178,14 @@ def _rows(file):
             return text or None
 
     if not file.exists():
-        return []
+        return tables.Rows()
     try:
         names, *rows = [row for row in csv.reader(io.StringIO(_arguments.text(file), newline="")) if row]
     except (csv.Error, ValueError):
         names, rows = [], []
     if any(len(row) != len(names) for row in rows) or not names:
         raise IoError(f"'{file}' is not the table of a sweep; the same sweep again writes it again")
-    return [dict(zip(names, map(value, row))) for row in rows]
+    return tables.Rows(dict(zip(names, map(value, row))) for row in rows)
 
 
 def render(what, file=None, **options):
