@@ -59,6 +59,16 @@ class _Base(ctypes.Structure):
     coefficient_of_restitution = _function("coefficient_of_restitution", _Restitution)
     additional_forces = _function("additional_forces", _Force)
 
+    @property
+    def collision_resolve(self):
+        raise AttributeError("You can only set C function pointers from python.")
+
+    @collision_resolve.setter
+    def collision_resolve(self, function):
+        if function in ("hardsphere", "merge", "halt"):  # functions of REBOUND's library
+            function = lambda sim: None
+        self._kept_collision_resolve = self._collision_resolve = _Force(function)
+
     def __init__(self):
         super().__init__(G=1.0, dt=0.001, N_active=-1, root_size=-1.0, N_root_x=1, N_root_y=1, N_root_z=1, _gravity=1)
         self.rows = []
