@@ -6,6 +6,7 @@
 #include <keeler/core/error.hpp>
 #include <keeler/files/columns.hpp>
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <iterator>
@@ -28,9 +29,9 @@ void write_csv_table(const std::filesystem::path& file, const ParticleTable& tab
   for (const std::size_t column : columns)
     header += "," + table_columns()[column].with_unit();
   write_rows(file, header + "\n", table.size(), [&](fmt::memory_buffer& row, std::size_t k) {
-    fmt::format_to(std::back_inserter(row), "{}", id_of(table, k));
+    fmt::format_to(std::back_inserter(row), FMT_COMPILE("{}"), id_of(table, k));
     for (const std::size_t column : columns)
-      fmt::format_to(std::back_inserter(row), ",{}", value_in(table, column, k));
+      fmt::format_to(std::back_inserter(row), FMT_COMPILE(",{}"), value_in(table, column, k));
     row.push_back('\n');
   });
 }

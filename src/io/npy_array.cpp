@@ -76,7 +76,7 @@ constexpr NpyType npy_types[] = {
     {"'<u8'", 8, &numbers_in<std::uint64_t>}, {"'<u4'", 4, &numbers_in<std::uint32_t>},
 };
 
-// Reorders the values of a matrix whose first index runs fastest.
+// Reorders the values of a matrix from Fortran's order to C's.
 std::vector<double> transposed(const std::vector<double>& values, std::size_t rows, std::size_t columns) {
   std::vector<double> turned(values.size());
   for (std::size_t row = 0; row < rows; ++row)

@@ -1,4 +1,4 @@
-// Zip archives whose members are stored, not compressed, below 4 GiB: those of numpy.savez.
+// Zip archives of stored members (not compressed) below 4 GiB, as numpy.savez writes them.
 #pragma once
 
 #include <keeler/files/new_file.hpp>
