@@ -394,13 +394,9 @@ def resume(folder):
     return Simulation._of(core)
 
 
-def from_arrays(
-    scene, positions, radii, velocities=None, masses=None, spins=None, *, relax=False, shear_offset=0.0, **overrides
-):
-    """Returns a simulation of given particles in the scene's box: see start_from_arrays()."""
-    start = snapshots.start_from_arrays(
-        scene, positions, radii, velocities, masses, spins, relax=relax, shear_offset=shear_offset, **overrides
-    )
+def from_arrays(scene, positions, radii, velocities=None, masses=None, spins=None, **options):
+    """Returns a simulation of given particles in the scene's box: see start_from_arrays(), which has the options."""
+    start = snapshots.start_from_arrays(scene, positions, radii, velocities, masses, spins, **options)
     return Simulation(start.scene, start=start)
 
 
