@@ -18,7 +18,7 @@ for key in collisions_per_particle_orbit slow_contacts_per_particle_orbit wall_s
 done
 grep -q '"event":"force_error","step":150,"rms":[0-9]' "$work/run/log.jsonl" ||
   fail "no error of forces at the end: $(cat "$work/run/log.jsonl")"
-has force_error "\{\"rms\":$number,\"worst_rms\":$number,\"checks\":[0-9]+,\"particles\":200\}"
+has force_error "\{\"rms\":$number,\"worst_rms\":$number,\"checks\":[0-9]+,\"particles\":128\}"
 awk -F'[:,]' '/"worst_rms"/ { seen = 1; if (!($2 > 0 && $2 < 0.02)) exit 1 } END { exit !seen }' "$work/out" ||
   fail "the error of forces: $(grep -A 5 force_error "$work/out")"
 for part in start_s drift_s gravity_s series_s snapshots_s checkpoints_s force_checks_s; do
