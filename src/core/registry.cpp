@@ -59,10 +59,4 @@ void fail_taken_key(const std::string& what, const std::string& name, const std:
       fmt::format("the key '{}' of the {} '{}' is in its table already; give it another name", key, what, name));
 }
 
-void fail_late(const std::string& what, const std::string& name) {
-  throw UsageError(fmt::format("it is too late to add the {} '{}' (a scene or a run has used the others); add it "
-                               "before the first scene is read",
-                               what, name));
-}
-
 } // namespace keeler

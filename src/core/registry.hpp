@@ -1,10 +1,13 @@
 // What scenes and output call by name: forces, laws, columns. A registry has Keeler's entries and then those that the
 // calling program adds, in the order of their names, so that results do not depend on the order in which they came.
+// Entries that a reader has seen never change or move, since scenes refer to them: a later addition makes a new list,
+// and the earlier ones are kept.
 #pragma once
 
 #include <keeler/core/key.hpp>
 
 #include <algorithm>
+#include <list>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -25,35 +28,39 @@ void require_complete_keys(const std::string& what, const std::string& name, con
                            KeyTable table);
 [[noreturn]] void fail_taken(const std::string& what, const std::string& name);
 [[noreturn]] void fail_taken_key(const std::string& what, const std::string& name, const std::string& key);
-[[noreturn]] void fail_late(const std::string& what, const std::string& name);
 
 /// Entries with a name, and some with `keys`. Safe in several threads.
 template<class Entry> class Registry {
 public:
   Registry(std::string what, const char* Entry::*name, std::vector<Entry> of_keeler, KeyTable table = KeyTable::own)
-      : what_(std::move(what)), name_(name), table_(table), of_keeler_(of_keeler.size()),
-        entries_(std::move(of_keeler)) {}
+      : what_(std::move(what)), name_(name), table_(table), of_keeler_(of_keeler.size()) {
+    lists_.push_back(std::move(of_keeler));
+  }
 
-  /// Throws UsageError if the name or a key is invalid or taken, or after the first call of entries().
-  void add(Entry entry) {
+  /// Throws UsageError if the name or a key is invalid or taken. With IfTaken::replace an entry of the calling program
+  /// takes the place of an earlier one of its name.
+  void add(Entry entry, IfTaken if_taken = IfTaken::refuse) {
     require_registrable_name(what_, entry.*name_);
     if constexpr (requires { entry.keys; })
       require_complete_keys(what_, entry.*name_, entry.keys, table_);
     const std::lock_guard lock(guard_);
-    for (const Entry& other : entries_)
+    std::vector<Entry> next = lists_.back();
+    const auto first = next.begin() + static_cast<std::ptrdiff_t>(of_keeler_);
+    if (if_taken == IfTaken::replace)
+      next.erase(
+          std::remove_if(first, next.end(), [&](const Entry& other) { return name_of(other) == name_of(entry); }),
+          next.end());
+    for (const Entry& other : next)
       require_different(entry, other);
-    if (read_)
-      fail_late(what_, entry.*name_);
     const auto after = [&](const Entry& a, const Entry& b) { return name_of(a) < name_of(b); };
-    const auto first = entries_.begin() + static_cast<std::ptrdiff_t>(of_keeler_);
-    entries_.insert(std::upper_bound(first, entries_.end(), entry, after), std::move(entry));
+    next.insert(std::upper_bound(first, next.end(), entry, after), std::move(entry));
+    lists_.push_back(std::move(next));
   }
 
-  /// Returns all entries, which never change from then on: others may refer to them.
+  /// Returns all entries at present. The list never changes and is never freed.
   const std::vector<Entry>& entries() {
     const std::lock_guard lock(guard_);
-    read_ = true;
-    return entries_;
+    return lists_.back();
   }
 
 private:
@@ -75,8 +82,7 @@ private:
   KeyTable table_;
   std::size_t of_keeler_;
   std::mutex guard_;
-  std::vector<Entry> entries_;
-  bool read_ = false;
+  std::list<std::vector<Entry>> lists_; // the last is in force
 };
 
 } // namespace keeler

@@ -269,8 +269,8 @@ void require_consistent(const SizeLaw& law) {
     require(std::pow(law.mean_power(k), 1.0 / k), fmt::format("the root of the mean power {}", k));
 }
 
-void add_size_law(SizeEntry entry) {
-  registered_size_laws().add(std::move(entry));
+void add_size_law(SizeEntry entry, IfTaken if_taken) {
+  registered_size_laws().add(std::move(entry), if_taken);
 }
 
 const std::vector<SizeEntry>& size_laws() {

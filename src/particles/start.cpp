@@ -12,8 +12,8 @@ Registry<StartEntry>& registered_starts() {
 
 } // namespace
 
-void add_start(StartEntry entry) {
-  registered_starts().add(std::move(entry));
+void add_start(StartEntry entry, IfTaken if_taken) {
+  registered_starts().add(std::move(entry), if_taken);
 }
 
 const std::vector<StartEntry>& start_laws() {

@@ -17,7 +17,11 @@ bool in_main_thread() {
 Keyboard::Keyboard() : main_(in_main_thread()) {
   if (!main_)
     return;
-  sigaction(SIGINT, nullptr, &before);
+  struct sigaction present;
+  sigaction(SIGINT, nullptr, &present);
+  if (present.sa_handler == note) // below a computation, in a force of Python: that one watches
+    return;
+  before = present;
   if ((before.sa_flags & SA_SIGINFO) != 0 || before.sa_handler == SIG_DFL || before.sa_handler == SIG_IGN)
     return; // not Python's handler
   stop_ = give_up_ = false;

@@ -59,4 +59,7 @@ PYBIND11_MODULE(_core, module) {
   python::bind_scene(module);
   python::bind_snapshot(module);
   python::bind_simulation(module);
+  python::bind_run(module);
+  python::bind_own_forces(module);
+  python::bind_own_physics(module);
 }

@@ -337,10 +337,10 @@ std::vector<quantities::Quantity> own_quantities() {
 
 } // namespace
 
-void add_quantity(const OwnQuantity& own) {
+void add_quantity(const OwnQuantity& own, IfTaken if_taken) {
   if (own.name && find_quantity(joined(quantities_of(all_rows()), transport_quantities()), own.name))
     fail_taken("quantity", own.name);
-  registered_quantities().add(own);
+  registered_quantities().add(own, if_taken);
   assert(own.value && "a quantity has a function");
 }
 
@@ -349,7 +349,7 @@ std::string analyze_json(const std::filesystem::path& path) {
   return json_text(json_of(record_of(measure(part.stored.patches, part.transport))), 2);
 }
 
-double Measurement::mean_over_snapshots(double (*value)(const Patch&)) const {
+double Measurement::mean_over_snapshots(const std::function<double(const Patch&)>& value) const {
   assert(!patches.empty());
   const double weight = 1.0 / static_cast<double>(patches.size());
   double mean = 0.0;

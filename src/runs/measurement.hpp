@@ -19,7 +19,7 @@ struct Measurement {
   quantities::PatchUnits units; ///< of the last patch
 
   /// Returns the mean of a function of one snapshot over all snapshots. Precondition: `patches` is not empty.
-  double mean_over_snapshots(double (*value)(const Patch&)) const;
+  double mean_over_snapshots(const std::function<double(const Patch&)>& value) const;
 };
 
 /// Measures patches, oldest first; the result refers to them, so they must outlive it. `patch_done` is called after

@@ -161,10 +161,11 @@ SeriesSample::SeriesSample(const Scene& of_scene, const Simulation& of_simulatio
     : scene(of_scene), simulation(of_simulation), means(of_simulation.means()), balance(of_simulation.balance(means)),
       waves(waves_in(of_simulation, means, of_scene.planet.frequencies)), gravity(of_gravity) {}
 
-void add_series_column(const OwnColumn& own) {
+void add_series_column(const OwnColumn& own, IfTaken if_taken) {
   if (own.name && own.name == std::string_view("step")) // each row begins with it
     fail_taken("column", own.name);
-  registered_columns().add({own.name, own.unit, own.plot, ColumnKind::value, own.meaning, nullptr, own.in, own.value});
+  registered_columns().add({own.name, own.unit, own.plot, ColumnKind::value, own.meaning, nullptr, own.in, own.value},
+                           if_taken);
   assert(own.value && "a column has a function");
 }
 

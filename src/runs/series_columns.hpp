@@ -8,6 +8,7 @@
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/simulation.hpp>
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -40,12 +41,12 @@ struct SeriesColumn {
   ColumnKind kind;
   const char* meaning;
   double (*value)(const SeriesSample&);
-  bool (*in)(const Scene&) = nullptr;                       ///< true for scenes that have the column; null: all scenes
-  double (*own)(const Simulation&, const Scene&) = nullptr; ///< in place of `value`, of the calling program
+  bool (*in)(const Scene&) = nullptr; ///< true for scenes that have the column; null: all scenes
+  std::function<double(const Simulation&, const Scene&)> own = nullptr; ///< in place of `value`, of the calling program
 };
 
-/// Returns all columns, in their order, without the step with which every row begins. From the first call on, none can
-/// be added (own_numbers.hpp).
+/// Returns all columns, in their order, without the step with which every row begins. The list never changes: what is
+/// added later (own_numbers.hpp) is in another one.
 const std::vector<SeriesColumn>& series_columns();
 
 /// Returns the names, units and meanings of all columns.

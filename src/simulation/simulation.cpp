@@ -281,7 +281,9 @@ void Simulation::accelerate(std::size_t f) {
   std::vector<Vec3>& accelerations = state_.forces[f].accelerations;
   accelerations.resize(state_.particles.size());
   drift_.release_contacts();
-  forces_[f]->accelerate(boundary(), accelerations);
+  forces::Boundary at = boundary();
+  at.interval = static_cast<double>(ticks_between_kicks(f)) * state_.tick();
+  forces_[f]->accelerate(at, accelerations);
 }
 
 // Applies half a kick interval's velocity change, at the boundary between steps. Two half kicks stay two additions.

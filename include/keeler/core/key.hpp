@@ -18,6 +18,10 @@ enum class KeyType { text, path, choice, number, integer, pair, triple, rows };
 /// What a key affects. The state hash covers keys of `motion`; keys of `start` affect only the initial state.
 enum class KeyEffect { motion, start, output };
 
+/// What becomes of an addition with a name that the calling program has given before: a program that runs the same
+/// lines again, such as a cell of a notebook, replaces. Scenes that were read before keep what they were read with.
+enum class IfTaken { refuse, replace };
+
 /// Interval of allowed numbers; an open end is excluded.
 struct KeyRange {
   double low = -std::numeric_limits<double>::infinity(); ///< lower end

@@ -10,6 +10,7 @@
 #include <keeler/particles/store.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -30,6 +31,9 @@ struct Boundary {
   std::int64_t step;       ///< ticks done
   double time = 0.0;       ///< since the run began, rad
   Communicator ranks = {}; ///< each rank has its own particles
+  /// From kick to kick of this force, rad: the two half kicks with the accelerations of this boundary last that long,
+  /// unless an automatic step changes here.
+  double interval = 0.0;
 
   /// Returns the rotation of elements from the epoch back to this boundary.
   Rotation rotation() const { return {frequencies, -to_epoch}; }
@@ -47,8 +51,9 @@ public:
   /// Writes each particle's acceleration (m rad⁻²; one in m s⁻² is divided by Ω²), in the order of the particles.
   /// Collective. The result must depend on the particles, the step and the force's parameters only: not on threads, the
   /// order in memory, the number of ranks or earlier calls. A restart is bit-identical then. A force that depends on
-  /// velocities sees those before the second half kick, so its step is of first order in its own rate times the step.
-  /// Precondition: one acceleration per particle.
+  /// velocities sees those before both half kicks that it makes here: its step is of first order in its own rate times
+  /// the step, and of second order if interval times the acceleration is the change of velocity that its own equation
+  /// of motion gives in `interval` (docs/theory/gas-drag.md). Precondition: one acceleration per particle.
   virtual void accelerate(const Boundary& boundary, std::span<Vec3> accelerations) = 0;
 
   /// Returns the energy and the stress of the particles in their own field, or nothing if the force cannot measure
@@ -68,24 +73,25 @@ struct ForceContext {
   Communicator ranks = {}; ///< each rank has its own particles; all ranks make each force together
 };
 
-/// A force that a scene selects by a table. What the force does follows from its keys: they are in the state hash.
+/// A force that a scene selects by a table. What the force does must follow from its keys: they are in the state hash,
+/// and what `make` captures is not.
 struct ForceEntry {
   const char* table;     ///< its name in scenes, checkpoints, the time split and the energy budget; a literal
-  std::vector<Key> keys; ///< by their names in the table; all affect the motion
+  std::vector<Key> keys; ///< at least one, by their names in the table; all affect the motion
   /// Makes the force from the checked values; throws UsageError if they do not fit together.
-  std::unique_ptr<Force> (*make)(const Parameters& parameters, const ForceContext& context);
+  std::function<std::unique_ptr<Force>(const Parameters& parameters, const ForceContext& context)> make;
   /// Throws UsageError if the values do not fit a box of this radial size; null: no check. `make` repeats the check,
   /// for boxes that the scene does not define.
   void (*check)(const Parameters& parameters, double size_x) = nullptr;
 };
 
-/// Adds a force of the calling program. Scenes have its table from then on; a program without it refuses such a scene
-/// or checkpoint. Call it before the first scene is read, in any thread. Added forces kick after Keeler's, in the order
-/// of their names. Throws UsageError for an invalid entry, a name that is taken, or a call that comes too late.
-void add_force(ForceEntry entry);
+/// Adds a force of the calling program, in any thread. Scenes that are read from then on have its table; a program
+/// without it refuses such a scene or checkpoint. Added forces kick after Keeler's, in the order of their names. Throws
+/// UsageError for an invalid entry, or a name that is taken.
+void add_force(ForceEntry entry, IfTaken if_taken = IfTaken::refuse);
 
 /// Returns all forces but self-gravity, which has settings of a separate type (self_gravity.hpp) because solvers are
-/// selected, measured and tuned by them. From the first call on, none can be added.
+/// selected, measured and tuned by them. The list never changes: what is added later is in another one.
 const std::vector<ForceEntry>& external_forces();
 
 } // namespace keeler::forces

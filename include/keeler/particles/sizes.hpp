@@ -70,14 +70,14 @@ struct SizeEntry {
   const char* name;      ///< a literal
   std::vector<Key> keys; ///< by their names in the table, which all laws share; they only affect the start
   /// Makes the law from the checked values; throws UsageError if they do not fit together.
-  SizeLaw (*make)(const Parameters& parameters);
+  std::function<SizeLaw(const Parameters& parameters)> make;
 };
 
-/// Adds a law of the calling program, which scenes can choose from then on. Call it before the first scene is read, in
-/// any thread. Throws UsageError for an invalid entry, a name or a key that is taken, or a call that comes too late.
-void add_size_law(SizeEntry entry);
+/// Adds a law of the calling program, in any thread, which scenes can choose from then on. Throws UsageError for an
+/// invalid entry, a name or a key that is taken.
+void add_size_law(SizeEntry entry, IfTaken if_taken = IfTaken::refuse);
 
-/// Returns all size laws. From the first call on, none can be added.
+/// Returns all size laws. The list never changes: what is added later is in another one.
 const std::vector<SizeEntry>& size_laws();
 
 } // namespace keeler::particles

@@ -7,6 +7,7 @@
 #include <keeler/hill/shearing_box.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -30,15 +31,14 @@ struct StartEntry {
   /// Returns position (m) and velocity (m rad⁻¹, shear included) of each particle, in Hill's frame, in or near the box.
   /// Spheres must not overlap, moonlets of the scene included. The result must depend on the arguments only. In a
   /// distributed run the root alone calls it, for all particles. Throws UsageError if the values do not fit.
-  std::vector<State> (*place)(const Parameters& parameters, const StartRequest& request);
+  std::function<std::vector<State>(const Parameters& parameters, const StartRequest& request)> place;
 };
 
-/// Adds a start of the calling program, which scenes can choose from then on, with no patterns of [particles] and no
-/// aggregates. Call it before the first scene is read, in any thread. Throws UsageError for an invalid entry, a name or
-/// a key that is taken, or a call that comes too late.
-void add_start(StartEntry entry);
+/// Adds a start of the calling program, in any thread, which scenes can choose from then on, with no patterns of
+/// [particles] and no aggregates. Throws UsageError for an invalid entry, a name or a key that is taken.
+void add_start(StartEntry entry, IfTaken if_taken = IfTaken::refuse);
 
-/// Returns all starts that were added. From the first call on, none can be added.
+/// Returns all starts that were added. The list never changes: what is added later is in another one.
 const std::vector<StartEntry>& start_laws();
 
 } // namespace keeler::particles

@@ -23,7 +23,9 @@ Contents:
 - ``Run``: the folder of a run, from ``run`` or ``read(folder)``: series, snapshots, summary. ``sweep`` makes many runs.
 - ``analyze()`` of each of these returns ``Numbers``; ``quantities`` lists their units and meanings.
 - ``Columns`` and ``Rows``: the tables of runs and sweeps; ``to_pandas()`` and ``to_xarray()`` where these are installed.
-- ``render``: a picture of any of them. ``add_restitution_law``: a user-defined law.
+- ``render``: a picture of any of them.
+- ``add_force``, ``add_restitution_law``, ``add_size_law``, ``add_start``, ``add_quantity``, ``add_series_column``:
+  physics and numbers of your own, called by name; ``Key`` declares a number of theirs.
 - ``set_threads``, ``threads``: results are bitwise identical for any number of threads.
 - ``Error`` and its four kinds: ``UsageError``, ``InvariantError``, ``IoError``, ``RunError``.
 
@@ -32,7 +34,6 @@ docs/manual/python.md has more.
 """
 
 import atexit as _atexit
-import ctypes as _ctypes
 import os as _os
 import sys as _sys
 from importlib.util import find_spec as _find_spec
@@ -61,15 +62,17 @@ from . import _border, _core
 
 _border.guard(_core)
 
-from . import scenes
+from . import own, scenes
 from .errors import Error, InvariantError, IoError, RunError, UsageError
 from .numbers import Numbers, Quantity, quantities
+from .own import Key, StartRequest, add_force, add_quantity, add_series_column, add_size_law, add_start
 from .rebound import from_rebound, to_rebound
 from .runs import Run, program, read, render, run, sweep
 from .simulation import ELEMENTS, Simulation, from_arrays, load, resume
 from .snapshots import Picture, Snapshot, generate, start_from_arrays, tile
 from .tables import Columns, Rows
 
+Kick = _core.Kick
 __version__ = _core.version()
 
 _atexit.register(_core.end_other_threads)  # the interpreter would end computing daemon threads inside C++
@@ -80,6 +83,8 @@ __all__ = [
     "Error",
     "InvariantError",
     "IoError",
+    "Key",
+    "Kick",
     "Numbers",
     "Picture",
     "Quantity",
@@ -88,8 +93,14 @@ __all__ = [
     "RunError",
     "Simulation",
     "Snapshot",
+    "StartRequest",
     "UsageError",
+    "add_force",
+    "add_quantity",
     "add_restitution_law",
+    "add_series_column",
+    "add_size_law",
+    "add_start",
     "from_arrays",
     "from_rebound",
     "generate",
@@ -134,11 +145,8 @@ def add_restitution_law(name, function):
     The name enters the scene and ``state_hash``: a program without a law of that name refuses to continue such a run.
     Raises UsageError for a coefficient out of range, or a name that is taken.
     """
-    if isinstance(function, (_ctypes._CFuncPtr, _ctypes.c_void_p)):
-        address = _ctypes.cast(function, _ctypes.c_void_p).value
-    else:
-        address = 0 if isinstance(function, bool) or not isinstance(function, int) else function
-    if not address or not 0 < address < 2**64:
+    address = own.compiled(function)
+    if not address:
         raise UsageError(f"{function!r} is no compiled function; give a ctypes function or the address of one")
     _core.add_restitution_law(name, address)
     _own_laws.append(function)

@@ -8,7 +8,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-from . import _arguments, _core, _processes, numbers, scenes, snapshots, tables
+from . import _arguments, _core, _processes, numbers, own, scenes, snapshots, tables
 from .errors import Error, InvariantError, IoError, RunError, UsageError
 
 
@@ -55,6 +55,12 @@ class Run:
     @property
     def snapshots(self):
         return _Snapshots(sorted(self.folder.glob("snap_*.hdf"), key=lambda file: (len(file.name), file.name)))
+
+    def resume(self, until=None):
+        """Continues the run from its newest checkpoint, to the scene's end or ``until`` (orbits), as ``keeler resume``
+        but in this process, which must know its physics. Returns the run. Raises UsageError, InvariantError, IoError."""
+        _core.resume_run(self.folder, until)
+        return self
 
     def analyze(self, since=None, until=None):
         """Returns the Numbers of ``keeler analyze DIR --json``, a dictionary, between two orbits (default: the steady
@@ -119,6 +125,9 @@ def run(scene, folder, *, start=None, force=False, **overrides):
     ``start`` is the initial state, as of a Simulation. Returns the Run: ``run.series``, ``run.analyze()`` with all
     viscosities. A folder with a run is refused unless ``force``. Ctrl-C stops the run with a checkpoint;
     ``keeler resume FOLDER`` continues it. Raises the program's error: UsageError, InvariantError, IoError, RunError.
+
+    A scene with physics of your own (``add_force``, ...) runs in this process, which alone knows it, and so does every
+    scene after ``add_series_column``; ``run.resume()`` continues such a run.
     """
     folder = _arguments.path(folder, "run")
     with _processes.folder() as temporary:
@@ -127,7 +136,13 @@ def run(scene, folder, *, start=None, force=False, **overrides):
             start = snapshots.as_snapshot(start)
             start.save(temporary / "start.hdf")
             source = ["--from", temporary / "start.hdf"]
-        file.write_text(scenes.read(scene, overrides, start and start._name).text, encoding="utf-8")
+        checked = scenes.read(scene, overrides, start and start._name)
+        if own.needs_this_process(checked.text):
+            if start is not None:
+                checked = scenes.read(scene, overrides, temporary / "start.hdf")
+            _core.start_run(checked, folder, force)
+            return Run(folder)
+        file.write_text(checked.text, encoding="utf-8")
         _call(["run", file, "-o", folder, *source, *(["--force"] if force else [])])
     return Run(folder)
 

@@ -1,4 +1,4 @@
-// Apart from the other tests, because what a program adds it adds before its first scene is read.
+// Apart from the other tests, whose scenes have no physics of a calling program.
 #include "own_physics.hpp"
 #include "scenes.hpp"
 #include "unit/files/disk.hpp"
@@ -215,7 +215,7 @@ TEST_CASE("an own column is in series.csv, and an own quantity in what analyze p
   CHECK(find_quantity(series_quantities(), "gas_work_j") != nullptr);
 }
 
-TEST_CASE("a name that is taken is refused, and so is what comes too late") {
+TEST_CASE("a name that is taken is refused") {
   add_own_physics();
   CHECK(fault_of([] { add_force(gas_drag("satellite")); }) ==
         "there is a force 'satellite' already; give this force another name");
@@ -229,7 +229,12 @@ TEST_CASE("a name that is taken is refused, and so is what comes too late") {
     CHECK(refused(section.path.substr(0, section.path.find('.'))));
   for (const Key& key : scene::scene_keys())
     CHECK((!key.section().empty() || refused(key.path)));
-  CHECK(has(fault_of([] { add_force(gas_drag("late")); }), "it is too late to add the force 'late'"));
+  CHECK(has(fault_of([] {
+              add_force({"bare", {}, [](const Parameters&, const forces::ForceContext&) {
+                           return std::unique_ptr<forces::Force>();
+                         }});
+            }),
+            "the force 'bare' has no keys"));
 
   CHECK(has(fault_of([] { particles::add_size_law({"power", {}, nullptr}); }), "there is a size law 'power' already"));
   CHECK(has(fault_of([] {
@@ -244,6 +249,32 @@ TEST_CASE("a name that is taken is refused, and so is what comes too late") {
   CHECK(has(fault_of([] { add_series_column({"step", "1", "", "", nullptr}); }), "there is a column 'step'"));
   for (const char* name : {"mean_height_m", "toomre_q", "total_viscosity_m2_s", "clusters"})
     CHECK(has(fault_of([&] { add_quantity({name, "", "", "", nullptr}); }), "there is a quantity"));
+}
+
+TEST_CASE(
+    "a force that is added after scenes were read is in the next ones, and a replaced one stays in those before") {
+  add_own_physics();
+  const Scene before = dragged();
+  CHECK(has(fault_of([] { dragged({"late.rate=0.2"}); }), "unknown key late.rate"));
+  add_force(gas_drag("late"));
+  const Scene late = dragged({"late.rate=0.2"});
+  REQUIRE(late.external_forces.size() == 2);
+  CHECK(dragged().resolved == before.resolved);
+
+  const auto speed_after = [](const Scene& scene) {
+    Simulation simulation(scene, initial_patch(scene));
+    simulation.advance();
+    return simulation.state().forces[1].accelerations[0].norm();
+  };
+  const double old = speed_after(late);
+  forces::ForceEntry twice = gas_drag("late");
+  twice.make = [](const Parameters& p, const forces::ForceContext&) -> std::unique_ptr<forces::Force> {
+    return std::make_unique<GasDrag>(2.0 * p.number("rate") / two_pi, p.integer("every"));
+  };
+  CHECK(has(fault_of([&] { add_force(twice); }), "there is a force 'late' already"));
+  add_force(twice, IfTaken::replace);
+  CHECK(speed_after(late) == old);
+  CHECK(speed_after(dragged({"late.rate=0.2"})) == doctest::Approx(2.0 * old).epsilon(0.05));
 }
 
 } // namespace own_physics_test

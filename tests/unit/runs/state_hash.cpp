@@ -92,6 +92,9 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
       {"constant_acceleration.radial", {"1e-9", motion}},
       {"constant_acceleration.azimuthal", {"1e-9", motion}},
       {"constant_acceleration.vertical", {"1e-9", motion}},
+      {"gas.stopping_time", {"0.2", motion}},
+      {"gas.head_wind", {"1.0", motion}},
+      {"gas.radius", {"1.0", motion}},
       {"time.step", {"2e-3", motion}},
       {"time.end", {"2.0", output}},
       {"output.snapshot_every", {"0.25", output}},
@@ -148,6 +151,8 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
     std::vector<std::string> overrides = {key.path + "=" + value};
     if (key.path == "collisions.friction.coefficient")
       overrides.push_back("collisions.friction.tangential_restitution=0.4");
+    if (key.section() == "gas" && key.name() != "stopping_time")
+      overrides.push_back("gas.stopping_time=0.1");
     const Scene changed = small_scene(overrides);
     CHECK((state_hash(state, changed) != hash) == (effect == motion));
   }
