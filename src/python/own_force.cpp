@@ -214,29 +214,15 @@ public:
   void accelerate(const Boundary& at, std::span<Vec3> accelerations) override {
     const double kick[] = {at.time / two_pi, at.interval / omega_, omega_, at.box.size_x, at.box.size_y, at.offset};
     const Rotation rotation = at.rotation();
-    const double scale = 1.0 / (omega_ * omega_);
     std::atomic<bool> finite = true;
-    const auto one_block = [&](std::size_t block) {
-      const std::size_t first = block * rows, count = std::min(rows, accelerations.size() - first);
-      Block b{}; // accelerations begin at zero
-      for (std::size_t k = 0; k < count; ++k) {
-        at.particles.prefetch_after(first + k);
-        const Body& body = at.particles.bodies[first + k];
-        const State state = state_at(body.elements, at.frequencies, rotation);
-        b.positions[k] = state.position;
-        b.velocities[k] = omega_ * state.velocity;
-        b.beyond_shear[k] = omega_ * peculiar_velocity(body.elements, at.frequencies, rotation);
-        b.masses[k] = body.mass;
-        b.radii[k] = body.radius;
-      }
-      function_(static_cast<std::int64_t>(count), b.positions[0].data(), b.velocities[0].data(),
-                b.beyond_shear[0].data(), b.masses, b.radii, &at.particles.ids[first], kick, keys_.data(),
-                b.accelerations[0].data());
-      for (std::size_t k = 0; k < count; ++k) {
-        accelerations[first + k] = scale * b.accelerations[k];
-        if (!accelerations[first + k].allFinite())
-          finite = false;
-      }
+    const auto one_block = [&](std::size_t number) {
+      const std::size_t first = number * rows, count = std::min(rows, accelerations.size() - first);
+      Block b;
+      fill(b, at.particles, first, count, at.frequencies, rotation, omega_);
+      function_(static_cast<std::int64_t>(count), b.positions, b.velocities, b.beyond_shear, b.masses, b.radii,
+                &at.particles.ids[first], kick, keys_.data(), b.accelerations);
+      if (!take(b, accelerations.subspan(first, count), 1.0 / (omega_ * omega_)))
+        finite = false;
     };
     parallel_for((accelerations.size() + rows - 1) / rows, one_block, 1);
     if (!finite)
@@ -247,9 +233,47 @@ private:
   static constexpr std::size_t rows = 128; // a block of 16 kB stays in the first cache
 
   struct Block {
-    Vec3 positions[rows], velocities[rows], beyond_shear[rows], accelerations[rows];
-    double masses[rows], radii[rows];
+    double positions[3 * rows], velocities[3 * rows], beyond_shear[3 * rows], masses[rows], radii[rows];
+    double accelerations[3 * rows];
   };
+
+  // Not inlined: gcc 12 would warn of a block that is not filled.
+  [[gnu::noinline]] static void fill(Block& b, const Particles& particles, std::size_t first, std::size_t count,
+                                     const Frequencies& f, const Rotation& r, const double omega) {
+    const double kappa = omega * f.kappa, half_kappa2 = 0.5 * f.kappa * kappa, nu = omega * f.nu, shear = f.shear();
+    for (std::size_t k = 0; k < count; ++k) {
+      particles.prefetch_after(first + k);
+      const Body& body = particles.bodies[first + k];
+      const Elements& el = body.elements;
+      const double ec = el.e_cos * r.cos_e - el.e_sin * r.sin_e, es = el.e_sin * r.cos_e + el.e_cos * r.sin_e;
+      const double drift = shear * el.guiding_x, x_speed = kappa * es;
+      const double z_speed = nu * (el.i_cos * r.cos_i - el.i_sin * r.sin_i);
+      b.positions[3 * k] = el.guiding_x - ec;
+      b.positions[3 * k + 1] = el.guiding_y - drift * r.after + 2.0 / f.kappa * es;
+      b.positions[3 * k + 2] = el.i_sin * r.cos_i + el.i_cos * r.sin_i;
+      b.velocities[3 * k] = x_speed;
+      b.velocities[3 * k + 1] = omega * (2.0 * ec - drift);
+      b.velocities[3 * k + 2] = z_speed;
+      b.beyond_shear[3 * k] = x_speed;
+      b.beyond_shear[3 * k + 1] = half_kappa2 * ec;
+      b.beyond_shear[3 * k + 2] = z_speed;
+      b.masses[k] = body.mass;
+      b.radii[k] = body.radius;
+    }
+    std::fill_n(b.accelerations, 3 * count, 0.0);
+  }
+
+  // Returns false if one is not finite.
+  static bool take(const Block& b, std::span<Vec3> accelerations, double scale) {
+    double x = 0.0, y = 0.0, z = 0.0; // sums of terms that are 0, or nan
+    for (std::size_t k = 0; k < accelerations.size(); ++k) {
+      const double ax = scale * b.accelerations[3 * k], ay = scale * b.accelerations[3 * k + 1],
+                   az = scale * b.accelerations[3 * k + 2];
+      x += ax - ax, y += ay - ay, z += az - az;
+      accelerations[k] = Vec3(ax, ay, az);
+    }
+    return x + y + z == 0.0;
+  }
 
   std::string name_;
   CompiledForceFunction function_;
