@@ -32,9 +32,11 @@ void run_here(runs::RunOptions options, const std::function<void(const runs::Run
     const Unlocked unlocked;
     go(options, requests);
   } catch (const Error&) { // of a stop before the first state was made, or of giving up
+    keyboard.deliver();
     raise_interrupts();
     throw;
   }
+  keyboard.deliver();
   raise_interrupts();
 }
 

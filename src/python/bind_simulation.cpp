@@ -210,6 +210,15 @@ void save(const Held& held, const std::filesystem::path& file) {
   runs::store_checkpoint(file, held.whole_state(), held.scene());
 }
 
+// Returns the work of each force since the run began, J.
+py::dict works(const Held& held) {
+  const double omega = held.scene().planet.orbital_frequency;
+  py::dict all;
+  for (const simulation::ForceState& force : held.state().forces)
+    all[py::str(force.name)] = force.work * omega * omega;
+  return all;
+}
+
 py::dict counts(const Held& held) {
   const simulation::SimulationState& state = held.state();
   py::dict numbers;
@@ -257,7 +266,8 @@ void bind_simulation(py::module_& module) {
       .def("record_contacts", &Held::record_contacts, py::arg("minimum_speed"))
       .def("take_contacts", &contacts)
       .def("save", &save, py::arg("file"))
-      .def("counts", &counts);
+      .def("counts", &counts)
+      .def("works", &works);
 }
 
 } // namespace keeler::python

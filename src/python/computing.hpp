@@ -38,6 +38,7 @@ template<class Make> auto make_interruptibly(const Make& make) {
     const Unlocked unlocked;
     return make();
   } catch (const Interrupted&) {
+    keyboard.deliver();
     raise_interrupts();
     throw;
   }

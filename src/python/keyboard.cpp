@@ -24,21 +24,31 @@ Keyboard::Keyboard() : main_(in_main_thread()) {
   before = present;
   if ((before.sa_flags & SA_SIGINFO) != 0 || before.sa_handler == SIG_DFL || before.sa_handler == SIG_IGN)
     return; // not Python's handler
-  stop_ = give_up_ = false;
+  stop_ = give_up_ = undelivered_ = false;
   struct sigaction now = before;
   now.sa_handler = note;
   watching_ = sigaction(SIGINT, &now, nullptr) == 0;
 }
 
 Keyboard::~Keyboard() {
-  if (watching_)
-    sigaction(SIGINT, &before, nullptr);
+  if (!watching_)
+    return;
+  sigaction(SIGINT, &before, nullptr);
+  deliver();
 }
 
 void Keyboard::note(int signal) {
-  if (stop_.exchange(true))
-    give_up_ = true;
+  if (!stop_.exchange(true)) {
+    undelivered_ = true;
+    return;
+  }
+  give_up_ = true;
   before.sa_handler(signal);
+}
+
+void Keyboard::deliver() const {
+  if (watching_ && undelivered_.exchange(false))
+    before.sa_handler(SIGINT);
 }
 
 void raise_interrupts() {

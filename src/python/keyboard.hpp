@@ -1,5 +1,6 @@
 // Ctrl-C while Keeler computes without the interpreter's lock. Python's handler only sets a flag, which the interpreter
-// reads after the computation.
+// reads when it next runs code. That may be a force of Python, whose step would be lost: so the first Ctrl-C reaches
+// the handler after the computation.
 #pragma once
 
 #include <atomic>
@@ -22,6 +23,9 @@ public:
   const std::atomic<bool>& stop_flag() const { return watching_ ? stop_ : when_it_ends(); }
   const std::atomic<bool>& give_up() const { return watching_ ? give_up_ : when_it_ends(); }
 
+  /// Calls the interpreter's handler for a Ctrl-C that it has not seen. The destructor does so too.
+  void deliver() const;
+
   /// Makes all other threads abandon their computations.
   static void end_others() { ends_ = true; }
 
@@ -29,8 +33,9 @@ private:
   static void note(int signal);
   const std::atomic<bool>& when_it_ends() const { return main_ ? never_ : ends_; }
 
-  static inline std::atomic<bool> stop_ = false, give_up_ = false; // static, since a signal handler has no object
-  static inline std::atomic<bool> ends_ = false;                   // the interpreter ends
+  // static, since a signal handler has no object
+  static inline std::atomic<bool> stop_ = false, give_up_ = false, undelivered_ = false;
+  static inline std::atomic<bool> ends_ = false; // the interpreter ends
   static constexpr std::atomic<bool> never_ = false;
   bool main_, watching_ = false;
 };

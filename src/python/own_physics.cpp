@@ -57,16 +57,18 @@ particles::SizeLaw law_between(const std::string& name, std::vector<double> radi
 
 void add_python_size_law(const std::string& name, py::object quantile, const py::list& declared) {
   const std::vector<Key> keys = keys_from(declared);
-  particles::add_size_law({kept_text(name), keys,
-                           [name, keys, function = KeptObject(std::move(quantile))](const Parameters& p) {
-                             const py::gil_scoped_acquire lock;
-                             py::array_t<double> u(intervals + 1);
-                             for (std::size_t k = 0; k <= intervals; ++k)
-                               u.mutable_data()[k] = static_cast<double>(k) / intervals;
-                             const auto radii = (*function)(sealed(std::move(u)), values_of(keys, p)).cast<Doubles>();
-                             return law_between(name, numbers_from(radii, intervals + 1, "what a size law returns"));
-                           }},
-                          IfTaken::replace);
+  particles::add_size_law(
+      {kept_text(name), keys,
+       [name, keys, function = KeptObject(std::move(quantile))](const Parameters& p) {
+         const py::gil_scoped_acquire lock;
+         py::array_t<double> u(intervals + 1);
+         for (std::size_t k = 0; k <= intervals; ++k)
+           u.mutable_data()[k] = static_cast<double>(k) / intervals;
+         const auto radii = (*function)(sealed(std::move(u)), values_of(keys, p)).cast<Doubles>();
+         return law_between(name,
+                            numbers_from(radii, intervals + 1, fmt::format("what the size law '{}' returns", name)));
+       }},
+      IfTaken::replace);
 }
 
 py::array copy_of(std::span<const double> values) {
@@ -87,9 +89,11 @@ void add_python_start(const std::string& name, py::object place, const py::list&
                          request.frequencies.nu, omega * request.velocity_dispersion, request.seed, values_of(keys, p))
                  .cast<std::pair<Doubles, Doubles>>();
          const std::size_t count = request.radii.size();
-         const std::vector<Vec3> positions = vectors_from(states.first, count, "what the start places"),
+         const std::vector<Vec3> positions = vectors_from(states.first, count,
+                                                          fmt::format("the positions of the start '{}'", name)),
                                  velocities =
-                                     vectors_from(states.second, count, "velocities of the start", 1.0 / omega);
+                                     vectors_from(states.second, count,
+                                                  fmt::format("the velocities of the start '{}'", name), 1.0 / omega);
          std::vector<State> placed(count);
          for (std::size_t k = 0; k < count; ++k)
            placed[k] = {positions[k], velocities[k]};

@@ -133,7 +133,7 @@ def compiled(function):
     if isinstance(function, (ctypes._CFuncPtr, ctypes.c_void_p)):
         return ctypes.cast(function, ctypes.c_void_p).value or 0
     is_address = isinstance(function, int) and not isinstance(function, bool)
-    return function if is_address and 0 < function < 2**64 else 0
+    return function if is_address and 4096 <= function < 2**64 else 0  # the first page holds no code
 
 
 def _of_snapshot(function):
@@ -143,7 +143,8 @@ def _of_snapshot(function):
 
 def _callable(function, what):
     if not callable(function):
-        raise UsageError(f"{_arguments.shown(function)} is no function; give {what} a function of Python")
+        compilable = ", or a ctypes function or the address of one" if what == "a force" else ""
+        raise UsageError(f"{_arguments.shown(function)} is no function; give {what} a function of Python{compilable}")
     return function
 
 
@@ -155,8 +156,10 @@ def _text(value, name):
 
 def _declared(keys):
     """Returns keys as rows for the compiled part."""
+    if not isinstance(keys or {}, dict):
+        raise UsageError(f"keys is {_arguments.shown(keys)}; give a dictionary of names with default numbers or keeler.Keys")
     rows = []
-    for name, key in dict(keys or {}).items():
+    for name, key in (keys or {}).items():
         key = key if isinstance(key, Key) else Key(key)
         try:
             default = None if key.default is None else float(key.default)

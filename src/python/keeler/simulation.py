@@ -148,6 +148,11 @@ class Simulation:
             self._motion = self._core.motion()
         return self._motion
 
+    @property
+    def work_by_force(self):
+        """The work of each force on the motion beyond the shear since the start, in J: a dictionary by names."""
+        return self._core.works()
+
     def by_id(self, array):
         """Returns a copy of an array with its rows sorted by id; of a masked array with its mask."""
         array = np.asanyarray(array)
