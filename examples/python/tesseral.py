@@ -18,7 +18,7 @@ import numpy as np
 from common import arguments, plt
 
 figure, quick = arguments(__doc__, "tesseral.png")
-MU, SURFACE = 0.01, 0.32  # the anomaly, and the body's radius in units of the orbit's
+MU, SURFACE = 0.005, 0.32  # the anomaly, and the body's radius in units of the orbit's
 OMEGA = 2.5e-4  # of the patch, rad/s: Chariklo's ring
 
 
@@ -99,13 +99,17 @@ print(f"g {g:.3e} n; patch: growth rates within {error:.4f} g of the formula")
 # --- whole orbits about both masses, each beside two of slightly other eccentricity
 n_1, kappa_1 = frequencies(1.0)
 turning = n_1 + 2.0 * kappa_1  # Omega_B: 3 lambda - Omega_B t - 2 varpi rests at a = 1
-# d(n + 2 kappa - Omega_B)/da is -4.5; the anomaly's pull at the start shifts Delta by some -2.5 g
-begun = 1.0 + (np.linspace(-2.0, 2.0, 7 if quick else 21) + 2.5) * g / -4.5
+begun = 1.0 + np.linspace(-2.0, 2.0, 7 if quick else 21) * g / -4.5  # d(n + 2 kappa - Omega_B)/da is -4.5
 n, kappa = np.array([frequencies(a) for a in begun]).T
+# On the orbit that the direct pull forces, x = x_m cos 2mt and dy/dt = -(2 x_m + A_m/2) cos 2mt: no free e grows there.
+pulls = np.array([harmonic(m, 1.0) for m in range(1, 9)])
+slopes = np.array([harmonic(m, 1.0, lambda power: -power) for m in range(1, 9)])
+x_m = (pulls - slopes) / (4.0 * np.arange(1, 9) ** 2 - 1.0)
+first = begun + x_m.sum()
 small = 1e-6
 # a circular orbit, and the two beside it with e vectors small and i small
-z = np.stack([begun + 0.0j, begun - small, begun - 2.0j * small])
-v = 1.0j * n * begun + small * n * np.array([[0.0], [1.0j], [1.0]])
+z = np.stack([first + 0.0j, first - small, first - 2.0j * small])
+v = 1.0j * n * (first - np.sum(2.0 * x_m + 0.5 * pulls)) + small * n * np.array([[0.0], [1.0j], [1.0]])
 
 
 def attraction(z, time):
@@ -117,7 +121,7 @@ def attraction(z, time):
 h, longitudes = 0.05, [np.zeros(len(begun))]
 outer = 1.0 / (2.0 - 2.0 ** (1.0 / 3.0))
 parts = (outer, 1.0 - 2.0 * outer, outer)  # symplectic, of fourth order (Yoshida 1990): no drift of the energy
-steps = round(3.0 / g / h)
+steps = round(1.0 / g / h)
 for step in range(steps):
     t, before = step * h, z[0]
     for part in parts:

@@ -237,17 +237,17 @@ private:
     double accelerations[3 * rows];
   };
 
-  // Not inlined: gcc 12 would warn of a block that is not filled.
+  // Gives the bits of state_at() and peculiar_velocity(). Not inlined: gcc 12 would warn of a block that is not filled.
   [[gnu::noinline]] static void fill(Block& b, const Particles& particles, std::size_t first, std::size_t count,
                                      const Frequencies& f, const Rotation& r, const double omega) {
-    const double kappa = omega * f.kappa, half_kappa2 = 0.5 * f.kappa * kappa, nu = omega * f.nu, shear = f.shear();
+    const double half_kappa2 = 0.5 * f.kappa * f.kappa, shear = f.shear();
     for (std::size_t k = 0; k < count; ++k) {
       particles.prefetch_after(first + k);
       const Body& body = particles.bodies[first + k];
       const Elements& el = body.elements;
       const double ec = el.e_cos * r.cos_e - el.e_sin * r.sin_e, es = el.e_sin * r.cos_e + el.e_cos * r.sin_e;
-      const double drift = shear * el.guiding_x, x_speed = kappa * es;
-      const double z_speed = nu * (el.i_cos * r.cos_i - el.i_sin * r.sin_i);
+      const double drift = shear * el.guiding_x, x_speed = omega * (f.kappa * es);
+      const double z_speed = omega * (f.nu * (el.i_cos * r.cos_i - el.i_sin * r.sin_i));
       b.positions[3 * k] = el.guiding_x - ec;
       b.positions[3 * k + 1] = el.guiding_y - drift * r.after + 2.0 / f.kappa * es;
       b.positions[3 * k + 2] = el.i_sin * r.cos_i + el.i_cos * r.sin_i;
@@ -255,7 +255,7 @@ private:
       b.velocities[3 * k + 1] = omega * (2.0 * ec - drift);
       b.velocities[3 * k + 2] = z_speed;
       b.beyond_shear[3 * k] = x_speed;
-      b.beyond_shear[3 * k + 1] = half_kappa2 * ec;
+      b.beyond_shear[3 * k + 1] = omega * (half_kappa2 * ec);
       b.beyond_shear[3 * k + 2] = z_speed;
       b.masses[k] = body.mass;
       b.radii[k] = body.radius;

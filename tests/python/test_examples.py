@@ -81,6 +81,26 @@ class Examples(unittest.TestCase):
         self.assertEqual((particles, frames), (573, 4))
         self.assertGreater(contrast, 0.2)
 
+    def test_gas_drag(self):
+        # (h/tau)^2/12 at St 0.03, and e^(-t/tau) at St 3
+        error, rate, bound, radius = self.figure(
+            "gas_drag.py", r"relative error ([\d.]+)\n.* falls at ([\d.]+) of 3 tau G M, bound at the end ([\d.]+), radius ([\d.]+) R_0")
+        self.assertLess(error, 2e-3)
+        self.assertAlmostEqual(rate, 0.93, delta=0.05)  # a lattice of 88 pebbles is bound less than a uniform sphere
+        self.assertGreater(bound, 0.95)
+        self.assertLess(radius, 0.5)
+
+    def test_tesseral(self):
+        patch, whole, largest = self.figure(
+            "tesseral.py", r"patch: growth rates within ([\d.]+) g .*\n.* within ([\d.]+) g of the formula, largest ([\d.]+) g")
+        self.assertLess(patch, 1e-3)
+        self.assertLess(whole, 0.06)  # the formula is of first order in the anomaly: 0.96 g at mu = 0.01, 0.98 at 0.005
+        self.assertAlmostEqual(largest, 0.98, delta=0.02)
+
+    @unittest.skipUnless(shutil.which("cc"), "no C compiler")
+    def test_radiation(self):
+        self.assertLess(self.figure("radiation.py", r"kappa: within ([\d.e-]+) of")[0], 1e-5)
+
 
 if __name__ == "__main__":
     unittest.main()

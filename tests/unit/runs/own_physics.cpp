@@ -230,9 +230,9 @@ TEST_CASE("a name that is taken is refused") {
   for (const Key& key : scene::scene_keys())
     CHECK((!key.section().empty() || refused(key.path)));
   CHECK(has(fault_of([] {
-              add_force({"bare", {}, [](const Parameters&, const forces::ForceContext&) {
-                           return std::unique_ptr<forces::Force>();
-                         }});
+              forces::add_force({"bare", {}, [](const Parameters&, const forces::ForceContext&) {
+                                   return std::unique_ptr<forces::Force>();
+                                 }});
             }),
             "the force 'bare' has no keys"));
 
@@ -271,8 +271,8 @@ TEST_CASE(
   twice.make = [](const Parameters& p, const forces::ForceContext&) -> std::unique_ptr<forces::Force> {
     return std::make_unique<GasDrag>(2.0 * p.number("rate") / two_pi, p.integer("every"));
   };
-  CHECK(has(fault_of([&] { add_force(twice); }), "there is a force 'late' already"));
-  add_force(twice, IfTaken::replace);
+  CHECK(has(fault_of([&] { forces::add_force(twice); }), "there is a force 'late' already"));
+  forces::add_force(twice, IfTaken::replace);
   CHECK(speed_after(late) == old);
   CHECK(speed_after(dragged({"late.rate=0.2"})) == doctest::Approx(2.0 * old).epsilon(0.05));
 }
