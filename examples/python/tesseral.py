@@ -94,7 +94,7 @@ found = rates(columns, time)
 law = g * np.sqrt(np.maximum(0.0, 1.0 - offsets**2 / 4.0))
 inside = np.abs(offsets) < 1.9
 error = np.abs(found - law)[inside].max() / g
-print(f"g {g:.3e} n; patch: growth rates within {error:.4f} g of the formula")
+print(f"g {g:.3e} n; patch: growth rates within {error:.1e} g of the formula")
 
 # --- whole orbits about both masses, each beside two of slightly other eccentricity
 n_1, kappa_1 = frequencies(1.0)

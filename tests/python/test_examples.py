@@ -92,7 +92,7 @@ class Examples(unittest.TestCase):
 
     def test_tesseral(self):
         patch, whole, largest = self.figure(
-            "tesseral.py", r"patch: growth rates within ([\d.]+) g .*\n.* within ([\d.]+) g of the formula, largest ([\d.]+) g")
+            "tesseral.py", r"patch: growth rates within ([\d.e-]+) g .*\n.* within ([\d.]+) g of the formula, largest ([\d.]+) g")
         self.assertLess(patch, 1e-3)
         self.assertLess(whole, 0.06)  # the formula is of first order in the anomaly: 0.96 g at mu = 0.01, 0.98 at 0.005
         self.assertAlmostEqual(largest, 0.98, delta=0.02)

@@ -255,7 +255,7 @@ TEST_CASE(
     "a force that is added after scenes were read is in the next ones, and a replaced one stays in those before") {
   add_own_physics();
   const Scene before = dragged();
-  CHECK(has(fault_of([] { dragged({"late.rate=0.2"}); }), "unknown key late.rate"));
+  CHECK(has(fault_of([] { dragged({"late.rate=0.2"}); }), "unknown table late"));
   add_force(gas_drag("late"));
   const Scene late = dragged({"late.rate=0.2"});
   REQUIRE(late.external_forces.size() == 2);
