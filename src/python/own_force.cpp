@@ -241,9 +241,10 @@ private:
   [[gnu::noinline]] static void fill(Block& b, const Particles& particles, std::size_t first, std::size_t count,
                                      const Frequencies& f, const Rotation& r, const double omega) {
     const double half_kappa2 = 0.5 * f.kappa * f.kappa, shear = f.shear();
+    const Body* const bodies = particles.bodies.data() + first;
     for (std::size_t k = 0; k < count; ++k) {
-      particles.prefetch_after(first + k);
-      const Body& body = particles.bodies[first + k];
+      const Body& body = bodies[k];
+      __builtin_prefetch(&body + 16); // an address beyond the end is harmless
       const Elements& el = body.elements;
       const double ec = el.e_cos * r.cos_e - el.e_sin * r.sin_e, es = el.e_sin * r.cos_e + el.e_cos * r.sin_e;
       const double drift = shear * el.guiding_x, x_speed = omega * (f.kappa * es);
@@ -265,14 +266,19 @@ private:
 
   // Returns false if one is not finite.
   static bool take(const Block& b, std::span<Vec3> accelerations, double scale) {
-    double x = 0.0, y = 0.0, z = 0.0; // sums of terms that are 0, or nan
-    for (std::size_t k = 0; k < accelerations.size(); ++k) {
-      const double ax = scale * b.accelerations[3 * k], ay = scale * b.accelerations[3 * k + 1],
-                   az = scale * b.accelerations[3 * k + 2];
-      x += ax - ax, y += ay - ay, z += az - az;
-      accelerations[k] = Vec3(ax, ay, az);
+    double* const to = accelerations.front().data();
+    const std::size_t count = 3 * accelerations.size();
+    double sums[4] = {}; // of terms that are 0, or nan
+    for (std::size_t k = 0; k < count / 4 * 4; k += 4)
+      for (std::size_t lane = 0; lane < 4; ++lane) {
+        to[k + lane] = scale * b.accelerations[k + lane];
+        sums[lane] += to[k + lane] - to[k + lane];
+      }
+    for (std::size_t k = count / 4 * 4; k < count; ++k) {
+      to[k] = scale * b.accelerations[k];
+      sums[0] += to[k] - to[k];
     }
-    return x + y + z == 0.0;
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]) == 0.0;
   }
 
   std::string name_;
