@@ -1,11 +1,10 @@
-// The run's series, drawn by dygraphs. All plots share the zoom of the time axis.
+// A run's series, drawn by dygraphs. All plots share the zoom of the time axis.
 "use strict";
-(function () {
-  const element = document.getElementById("series-data");
-  if (!element)
-    return;
-  const data = JSON.parse(element.textContent);
+
+// Returns what draws data of plots into an element, again when they have grown.
+function makePlots(parent) {
   const colours = ["#2166ac", "#b2182b", "#1b7837", "#762a83"];
+  let data = null, graphs = [], drawn = "";
 
   // Returns one row per time for dygraphs: [low, middle, high] for each curve, null for curves without a point there.
   function rows(curves) {
@@ -38,14 +37,13 @@
     pen.fillRect(left, area.y, right - left, area.h);
   }
 
-  function part(parent, tag, name) {
+  function part(above, tag, name) {
     const made = document.createElement(tag);
     made.className = name;
-    parent.appendChild(made);
+    above.appendChild(made);
     return made;
   }
 
-  const graphs = [];
   let zooming = false;
   function zoom(from, to) {
     if (zooming)
@@ -57,7 +55,7 @@
 
   // Makes all boxes before the first chart is drawn, since a chart takes its width from its box.
   function box(plot) {
-    const all = part(document.getElementById("plots"), "div", "plot");
+    const all = part(parent, "div", "plot");
     part(all, "h3", "").textContent = plot.unit ? `${plot.title}, ${plot.unit}` : plot.title;
     const legend = part(all, "div", "legend"), chart = part(all, "div", "chart");
     part(all, "p", "means").textContent = means(plot);
@@ -67,7 +65,7 @@
   const plain = (value) => String(Number(value.toPrecision(6)));
 
   function draw({ plot, legend, chart }) {
-    const graph = new Dygraph(chart, rows(plot.curves), {
+    return new Dygraph(chart, rows(plot.curves), {
       labels: ["orbit"].concat(plot.curves.map((curve) => curve.name)),
       customBars: true,
       connectSeparatedPoints: true,
@@ -85,8 +83,21 @@
       underlayCallback: shade,
       zoomCallback: (from, to) => zoom(from, to),
     });
-    graphs.push(graph);
   }
 
-  data.plots.map(box).forEach(draw);
-})();
+  return function show(next) {
+    data = next;
+    const curves = JSON.stringify(data.plots.map((plot) => [plot.title, plot.curves.map((curve) => curve.name)]));
+    if (curves === drawn) {
+      graphs.forEach((graph, k) => graph.updateOptions({ file: rows(data.plots[k].curves) }));
+      return;
+    }
+    drawn = curves;
+    graphs.forEach((graph) => graph.destroy());
+    parent.textContent = "";
+    graphs = data.plots.map(box).map(draw);
+  };
+}
+
+if (document.getElementById("series-data"))
+  makePlots(document.getElementById("plots"))(JSON.parse(document.getElementById("series-data").textContent));

@@ -297,7 +297,7 @@ std::string RunPage::head() const {
 
 std::string scripts() {
   std::string all;
-  for (const char* name : {"three.min.js", "OrbitControls.js", "dygraph.min.js", "plots.js", "view.js"})
+  for (const char* name : {"three.min.js", "OrbitControls.js", "dygraph.min.js", "plots.js", "stage.js", "view.js"})
     all += fmt::format("<script>\n{}\n</script>\n", asset(name));
   return all;
 }

@@ -42,6 +42,7 @@ void add_study(CLI::App& program, Action& action, const std::vector<std::string>
 void add_sweep(CLI::App& program, Action& action);
 void add_tile(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
 void add_tune(CLI::App& program, Action& action);
+void add_view(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
 void add_watch(CLI::App& program, Action& action);
 
 } // namespace keeler::cli

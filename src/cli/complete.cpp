@@ -123,7 +123,7 @@ Offer values_of(const CLI::Option& option, const std::string& begun) {
     return {.candidates = examples()};
   if (placeholder == "NAME,...")
     return {.candidates = numbers_after(begun)};
-  if (placeholder == "SCENE")
+  if (placeholder.starts_with("SCENE"))
     return {.names = "files", .candidates = examples()};
   if (placeholder == "KEY=VALUE")
     return {.candidates = scene_assignments(begun)};

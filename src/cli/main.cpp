@@ -67,6 +67,7 @@ void add_commands(CLI::App& program, Action& action, const std::vector<std::stri
   add_tile(program, action, arguments);
   group(program, "Start");
   add_run(program, action, arguments, ranks);
+  add_view(program, action, arguments);
   add_watch(program, action);
   add_resume(program, action, arguments, ranks);
   add_sweep(program, action);

@@ -17,7 +17,8 @@ struct SceneArguments {
   std::vector<std::string> overrides;
 
   /// Adds SCENE and --set to a command. Returns SCENE, so that the caller can make it required.
-  CLI::Option* add_to(CLI::App& command);
+  CLI::Option* add_to(CLI::App& command, const std::string& name = "SCENE",
+                      const std::string& about = "scene file (TOML), or the name of an example");
 
   /// Reads the scene. `from` is the snapshot of --from.
   Scene load(const std::optional<std::string>& from = {}) const { return load_scene(path, overrides, from); }

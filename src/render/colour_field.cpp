@@ -104,6 +104,15 @@ std::vector<double> field_values(const Patch& patch, ColourField field) {
   return heights;
 }
 
+std::vector<double> particle_densities(const Patch& patch) {
+  const DensityMap map(patch);
+  std::vector<double> values;
+  values.reserve(patch.size());
+  for (const Vec3& position : patch.positions)
+    values.push_back(map.at(position.x(), position.y()));
+  return values;
+}
+
 ColourRange colour_range(std::vector<double> values, ColourField field) {
   assert(!values.empty());
   const bool whole = field == ColourField::size || field == ColourField::cluster; // the few extreme values matter

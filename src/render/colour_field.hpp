@@ -41,6 +41,9 @@ struct ColourRange {
 /// have the field.
 std::vector<double> field_values(const Patch& patch, ColourField field);
 
+/// Returns the surface density (kg/m²) where each particle is, from the map.
+std::vector<double> particle_densities(const Patch& patch);
+
 /// Returns the range from the 1st to the 99th percentile, or the full range of sizes and clusters. Precondition:
 /// `values` is not empty.
 ColourRange colour_range(std::vector<double> values, ColourField field);

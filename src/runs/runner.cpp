@@ -34,10 +34,12 @@ Runner::Runner(const Scene& scene, const RunOptions& options, RunRequests& reque
 
 RunResult Runner::run() {
   const simulation::SimulationState& state = simulation_.state();
+  observe();
   while (state.step < scene_.time.end_step && !must_stop()) {
     advance();
     record();
     report();
+    observe();
   }
   RunResult result;
   result.finished = state.step >= scene_.time.end_step;
@@ -99,6 +101,16 @@ void Runner::record() {
     recorder_.check_forces(simulation_);
     last_time_ += recorder_.force_checks().last_s; // not part of a step
   }
+}
+
+// The time that the observer takes is not part of a step.
+void Runner::observe() {
+  if (!options_.observe || !between_kicks())
+    return;
+  options_.observe(simulation_);
+  const double waited = watch_.elapsed() - last_time_;
+  last_time_ += waited;
+  cost_s_ += waited;
 }
 
 bool Runner::checkpoint_due_by_clock() const {

@@ -40,6 +40,7 @@ private:
   double steps_between_stops() const { return static_cast<double>(scene_.kick_interval()); }
   bool must_stop() const;
   void record();
+  void observe();
   void report_passage();
   bool checkpoint_due_by_clock() const;
   // The exact sum needs all particles on one rank. For a single particle the pulls of its images cancel, so a relative

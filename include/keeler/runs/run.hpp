@@ -53,6 +53,8 @@ struct RunOptions {
   std::vector<std::string> arguments; ///< the command line, for provenance
   std::function<void(const initial_conditions::StartProgress&)> start_progress; ///< called while the start is made
   std::function<void(const RunProgress&)> progress;                             ///< called after each step
+  /// Called before the first step, and after each step that ends a kick interval; may wait. Must not change the run.
+  std::function<void(const Simulation&)> observe;
   Communicator ranks = {}; ///< processes of the run: all call with equal options, the root writes the folder
   std::function<void(const std::string&)> notice; ///< receives lines for the user: rounding, skipped checkpoints
 };

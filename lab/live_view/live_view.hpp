@@ -1,0 +1,67 @@
+// A run, shown while it goes on: a page for browsers of this machine, with the particles in three dimensions, plots of
+// the series, the snapshots so far, and buttons to pause, step and stop. docs/dev/view.md.
+//
+// Two threads meet here: the one that computes, which calls the members below between two steps, and the server's,
+// which answers the pages. Nothing is computed for a page that does not ask.
+#pragma once
+
+#include <keeler/simulation/simulation.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace keeler::live_view {
+
+enum class Stage {
+  files,    ///< no run in this process: snapshots, and the series of their run
+  starting, ///< the initial state is being made
+  running,
+  idle, ///< in memory, between two calls that compute
+  finished,
+  stopped
+};
+
+struct ViewOptions {
+  std::string title;
+  std::filesystem::path path; ///< a run's folder, or a snapshot; empty: only what is in memory
+  int port = 0;               ///< 0: the system chooses
+  std::function<void()> stop; ///< asks the run to stop; called in the server's thread. Empty: there is no run
+  Stage stage = Stage::files;
+};
+
+class LiveView {
+public:
+  /// Serves the page from now on. Throws Error when no port can be had or the program has no server.
+  explicit LiveView(const ViewOptions& options);
+  ~LiveView();
+  LiveView(const LiveView&) = delete;
+  LiveView& operator=(const LiveView&) = delete;
+
+  std::string address() const;
+
+  /// Changes what the page says about the run.
+  void set_stage(Stage stage, const std::string& message);
+
+  /// To be called between two steps, where kicks meet. Makes a frame if a page waits for one. Only reads.
+  void at_boundary(const Simulation& simulation, const Scene& scene);
+  /// Returns true if a page wants the run to wait before its next step.
+  bool holds() const;
+  /// Waits while holds(), until `ends` returns true. Returns the seconds waited.
+  double wait(const Simulation& simulation, const Scene& scene, const std::function<bool()>& ends);
+
+  /// The server may read this state until withdraw(). Both must outlive that.
+  void offer(const Simulation& simulation, const Scene& scene);
+  void withdraw();
+
+  /// Waits until a page has got what set_stage() said, or a second has passed without one.
+  void linger() const;
+
+private:
+  class Shared;
+  std::unique_ptr<Shared> shared_;
+};
+
+} // namespace keeler::live_view

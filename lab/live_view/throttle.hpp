@@ -1,0 +1,35 @@
+// Work that is repeated while somebody looks, but takes only a small part of the time.
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+
+namespace keeler::live_view {
+
+class Throttle {
+public:
+  using Clock = std::chrono::steady_clock;
+
+  /// Begins are at least `interval` (s) apart, and the work takes at most this fraction of the time.
+  Throttle(double interval, double fraction) : interval_(interval), fraction_(fraction) {
+    assert(interval >= 0.0 && fraction > 0.0);
+  }
+
+  bool due() const { return Clock::now() >= next_; }
+
+  /// Does the work, which is then due again after a while.
+  template<class Work> void spend(const Work& work) {
+    const Clock::time_point begin = Clock::now();
+    work();
+    const double spent = std::chrono::duration<double>(Clock::now() - begin).count();
+    next_ = begin + std::chrono::duration_cast<Clock::duration>(
+                        std::chrono::duration<double>(std::max(interval_, spent / fraction_)));
+  }
+
+private:
+  double interval_, fraction_;
+  Clock::time_point next_ = Clock::time_point::min();
+};
+
+} // namespace keeler::live_view
