@@ -1,204 +1,266 @@
 #include "encoder.hpp"
 
+#include "particle_lanes.hpp"
+
 #include <keeler/particles/store.hpp>
 #include <keeler/render/colour_field.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace keeler::live_view {
 namespace {
 
 using render::ColourField;
 
-constexpr float max_uint16 = 65535.0F;
-constexpr std::size_t range_samples = 2048;
-constexpr double range_step = 0.1; // of the way to the new ends of the colour bar, per frame
-constexpr std::size_t table_size = 4096;
+typedef int FourInts __attribute__((vector_size(16)));
 
-struct Span {
-  float low, unit; // of a coordinate, and of its numbers
+constexpr float max_number = 65535.0F;
+constexpr float margin = 0.02F;        // of the extents, so that the next frames fit as well
+constexpr std::size_t value_index = 4; // in an Extent
+constexpr std::size_t range_samples = 1024;
+constexpr double range_step = 0.1; // of the way to the new ends of the colour bar, per frame
+
+Four lesser(Four a, Four b) {
+  return a < b ? a : b;
+}
+
+Four greater(Four a, Four b) {
+  return a > b ? a : b;
+}
+
+Four clamped(Four value, float high) { // NaN, which a state may hold before its run ends by an error, becomes 0
+  return lesser(greater(value, four(0.0F)), four(high));
+}
+
+// Smallest and largest numbers, four particles beside each other.
+struct LaneExtent {
+  std::array<Four, 5> low, high;
+
+  LaneExtent() {
+    low.fill(four(Extent::huge));
+    high.fill(four(-Extent::huge));
+  }
+  void include(std::size_t which, Four value) {
+    low[which] = lesser(value, low[which]);
+    high[which] = greater(value, high[which]);
+  }
+  Extent extent() const {
+    Extent all;
+    for (std::size_t k = 0; k < low.size(); ++k)
+      for (int lane = 0; lane < 4; ++lane) {
+        all.low[k] = std::min(all.low[k], low[k][lane]);
+        all.high[k] = std::max(all.high[k], high[k][lane]);
+      }
+    return all;
+  }
 };
 
-Span span_of(const std::vector<float>& values) {
-  float low = values.front(), high = values.front();
-  for (const float value : values) {
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  return {low, (high - low) / max_uint16};
-}
-
-// Returns the value within [0, high]; 0 for NaN, which a state may hold for some steps before its run ends by an error.
-float bounded(float value, float high) {
-  return value > 0.0F ? std::min(value, high) : 0.0F;
-}
-
-// The indices of particles to show: all, or those with ids that are multiples of a number.
-void choose(const std::vector<std::uint64_t>& ids, std::vector<std::uint32_t>& chosen) {
-  const std::uint64_t every = (ids.size() + max_shown - 1) / max_shown;
-  chosen.clear();
-  for (std::size_t k = 0; k < ids.size(); ++k)
-    if (every == 1 || ids[k] % every == 0)
-      chosen.push_back(static_cast<std::uint32_t>(k));
-  if (chosen.empty())
-    chosen.push_back(0); // ids of another tool may have no such multiples
-}
-
-// Calls value(body, state, index) for the colour of each particle.
-template<class Value>
-void fill_from_bodies(const Particles& particles, const std::vector<std::uint32_t>& chosen,
-                      const Frequencies& frequencies, const Rotation& rotation,
-                      std::array<std::vector<float>, 3>& places, std::vector<float>& radii, std::vector<float>& values,
-                      const Value& value) {
-  for (std::size_t j = 0; j < chosen.size(); ++j) {
-    const std::size_t k = chosen[j];
-    particles.prefetch_after(k);
-    const Body& body = particles.bodies[k];
-    const State state = state_at(body.elements, frequencies, rotation);
-    for (int axis = 0; axis < 3; ++axis)
-      places[static_cast<std::size_t>(axis)][j] = static_cast<float>(state.position[axis]);
-    radii[j] = static_cast<float>(body.radius);
-    values[j] = static_cast<float>(value(body, state, k));
-  }
-}
+struct Loaded {
+  Lanes lanes;
+  Four value; // of the colour field
+};
 
 } // namespace
 
-void Encoder::Columns::resize(std::size_t count) {
-  for (std::vector<float>* column : {&places[0], &places[1], &places[2], &radii, &values})
-    column->resize(count);
+bool Encoder::whole_range() const { // the few extreme values matter
+  return field_ == ColourField::size || field_ == ColourField::cluster;
 }
 
-void Encoder::fill(const Simulation& simulation, const Scene& scene) {
+// Chooses all particles, or those with ids that are multiples of a number.
+void Encoder::choose(const std::vector<std::uint64_t>& ids) {
+  const std::uint64_t every = (ids.size() + max_shown - 1) / max_shown;
+  if (every == 1 && chosen_.size() == ids.size() && chosen_.back() + 1 == ids.size())
+    return;
+  chosen_.clear();
+  for (std::size_t k = 0; k < ids.size(); ++k)
+    if (every == 1 || ids[k] % every == 0)
+      chosen_.push_back(static_cast<std::uint32_t>(k));
+  if (chosen_.empty())
+    chosen_.push_back(0); // ids of another tool may have no such multiples
+}
+
+Frame Encoder::encode(const Simulation& simulation, const Scene& scene) {
+  if (field_ == ColourField::cluster || field_ == ColourField::density)
+    return encode(simulation.patch()); // they need all particles in Cartesian form
   const forces::Boundary boundary = simulation.boundary();
   const Particles& particles = boundary.particles;
-  choose(particles.ids, chosen_);
-  columns_.resize(chosen_.size());
-  const Rotation rotation = boundary.rotation();
-  const auto fill_with = [&](const auto& value) {
-    fill_from_bodies(particles, chosen_, boundary.frequencies, rotation, columns_.places, columns_.radii,
-                     columns_.values, value);
-  };
-  const double shear = boundary.box.shear, to_mm = 1e3 * scene.planet.orbital_frequency;
-  const particles::SpinTurn turn(-boundary.to_epoch);
-  if (field_ == ColourField::speed)
-    fill_with([&](const Body&, const State& at, std::size_t) {
-      return to_mm * (at.velocity + Vec3(0.0, shear * at.position.x(), 0.0)).norm();
+  choose(particles.ids);
+  const BodyLanes bodies(boundary);
+  std::shared_ptr<const std::string> data;
+  if (field_ == ColourField::speed) {
+    const Four to_mm = four(static_cast<float>(1e3 * scene.planet.orbital_frequency));
+    data = pack([&](const FourIndices& at) {
+      const Lanes lanes = bodies.read<true>(at);
+      return Loaded{lanes, to_mm * lanes.speed};
     });
-  else if (field_ == ColourField::size)
-    fill_with([](const Body& body, const State&, std::size_t) { return body.radius; });
-  else if (field_ == ColourField::spin)
-    fill_with([&](const Body&, const State&, std::size_t k) { return turn.from_epoch(particles.spins[k]).z(); });
-  else
-    fill_with([](const Body&, const State& at, std::size_t) { return at.position.z(); });
-}
-
-void Encoder::fill(const Patch& patch) {
-  choose(patch.ids, chosen_);
-  columns_.resize(chosen_.size());
-  const std::vector<double> values =
-      field_ == ColourField::density ? render::particle_densities(patch) : field_values(patch, field_);
-  for (std::size_t j = 0; j < chosen_.size(); ++j) {
-    const std::size_t k = chosen_[j];
-    for (int axis = 0; axis < 3; ++axis)
-      columns_.places[static_cast<std::size_t>(axis)][j] = static_cast<float>(patch.positions[k][axis]);
-    columns_.radii[j] = static_cast<float>(patch.radii[k]);
-    columns_.values[j] = static_cast<float>(values[k]);
-  }
-}
-
-// Clusters and densities need all particles in Cartesian form.
-Frame Encoder::encode(const Simulation& simulation, const Scene& scene) {
-  Frame frame;
-  if (field_ == ColourField::cluster || field_ == ColourField::density) {
-    frame = encode(simulation.patch());
+  } else if (field_ == ColourField::spin && particles.rough) {
+    const particles::SpinTurn turn(-boundary.to_epoch);
+    data = pack([&](const FourIndices& at) {
+      Loaded loaded{bodies.read<false>(at), {}};
+      for (int lane = 0; lane < 4; ++lane)
+        loaded.value[lane] = static_cast<float>(turn.from_epoch(particles.spins[at.k[lane]]).z());
+      return loaded;
+    });
   } else {
-    fill(simulation, scene);
-    frame = pack(simulation.state().particles.size(), simulation.state().box, simulation.orbits());
+    const bool by_size = field_ == ColourField::size;
+    data = pack([&](const FourIndices& at) {
+      const Lanes lanes = bodies.read<false>(at);
+      return Loaded{lanes, by_size ? lanes.radius : lanes.z};
+    });
   }
-  frame.step = simulation.state().step;
-  return frame;
+  return frame_of(std::move(data), particles.size(), boundary.box, simulation.orbits());
 }
 
 Frame Encoder::encode(const Patch& patch) {
   assert(patch.size() > 0);
-  fill(patch);
-  return pack(patch.size(), patch.box, patch.time_orbits);
+  choose(patch.ids);
+  const std::vector<double> values =
+      field_ == ColourField::density ? render::particle_densities(patch) : field_values(patch, field_);
+  std::shared_ptr<const std::string> data = pack([&](const FourIndices& at) {
+    Loaded loaded{patch_lanes(patch, at), {}};
+    for (int lane = 0; lane < 4; ++lane)
+      loaded.value[lane] = static_cast<float>(values[at.k[lane]]);
+    return loaded;
+  });
+  return frame_of(std::move(data), patch.size(), patch.box, patch.time_orbits);
 }
 
-render::ColourRange Encoder::next_range() {
-  const std::vector<float>& all = columns_.values;
+// Moves the colour bar towards the values of some particles.
+template<class Load> void Encoder::follow_values(const Load& load) {
   std::vector<double> sample;
-  if (field_ == ColourField::size || field_ == ColourField::cluster) { // the few extreme values matter
-    const auto [low, high] = std::minmax_element(all.begin(), all.end());
-    sample = {*low, *high};
+  if (whole_range()) {
+    sample = {extent_.low[value_index], extent_.high[value_index]};
   } else {
-    const std::size_t every = (all.size() + range_samples - 1) / range_samples;
-    for (std::size_t k = 0; k < all.size(); k += every)
-      sample.push_back(all[k]);
+    const std::size_t every = (chosen_.size() + range_samples - 1) / range_samples;
+    for (std::size_t j = 0; j < chosen_.size(); j += every)
+      sample.push_back(load(FourIndices(chosen_, j)).value[0]);
   }
   const render::ColourRange now = colour_range(std::move(sample), field_);
-  if (!has_range_ || now.logarithmic) {
-    range_ = now;
-  } else {
+  if (has_range_ && !now.logarithmic) {
     range_.low += range_step * (now.low - range_.low);
     range_.high += range_step * (now.high - range_.high);
+  } else {
+    range_ = now;
   }
   has_range_ = true;
-  return range_;
 }
 
-// Looks the colours of equal parts of the bar up in a table: a logarithm per particle would take as long as all else.
-void Encoder::pack_colours(const render::ColourRange& range, std::uint8_t* bytes) const {
-  std::array<std::uint8_t, table_size> table{};
-  const double part = (range.high - range.low) / (table_size - 1);
-  for (std::size_t k = 0; k < table_size; ++k)
-    table[k] =
-        static_cast<std::uint8_t>(std::lround(255.0 * range.position(range.low + static_cast<double>(k) * part)));
-  const float low = static_cast<float>(range.low), per_unit = part > 0.0 ? static_cast<float>(1.0 / part) : 0.0F;
-  for (std::size_t k = 0; k < columns_.values.size(); ++k) {
-    const float index = (columns_.values[k] - low) * per_unit + 0.5F;
-    bytes[k] = table[static_cast<std::size_t>(bounded(index, static_cast<float>(table_size - 1)))];
+// A logarithm per particle would take longer than all else.
+void Encoder::make_table() {
+  const double part = (range_.high - range_.low) / static_cast<double>(table_.size() - 1);
+  for (std::size_t k = 0; k < table_.size(); ++k)
+    table_[k] =
+        static_cast<std::uint8_t>(std::lround(255.0 * range_.position(range_.low + static_cast<double>(k) * part)));
+}
+
+bool Encoder::fits(const Extent& extent) const {
+  for (std::size_t k = 0; k < value_index; ++k)
+    if (extent.low[k] < extent_.low[k] || extent.high[k] > extent_.high[k])
+      return false;
+  return !whole_range() ||
+         (extent.low[value_index] == extent_.low[value_index] && extent.high[value_index] == extent_.high[value_index]);
+}
+
+void Encoder::fit(const Extent& extent) {
+  extent_ = extent;
+  for (std::size_t k = 0; k < value_index; ++k) {
+    const float room = margin * (extent.high[k] - extent.low[k]);
+    extent_.low[k] -= room;
+    extent_.high[k] += room;
   }
+  extent_.low[3] = 0.0F; // radius
 }
 
-Frame Encoder::pack(std::size_t total, const ShearingBox& box, double orbits) {
-  const std::size_t count = columns_.radii.size();
-  auto data = std::make_shared<std::string>(9 * count, '\0');
-  const Span x = span_of(columns_.places[0]), y = span_of(columns_.places[1]), z = span_of(columns_.places[2]);
-  const float largest = *std::max_element(columns_.radii.begin(), columns_.radii.end());
-  const auto per_unit = [](float unit) { return unit > 0.0F ? 1.0F / unit : 0.0F; };
-  const float in_x = per_unit(x.unit), in_y = per_unit(y.unit), in_z = per_unit(z.unit), in_r = max_uint16 / largest;
-  std::vector<std::uint16_t>& places = packed_;
-  places.resize(4 * count);
-  const auto rounded = [](float value) {
-    return static_cast<std::uint16_t>(static_cast<int>(bounded(value, max_uint16) + 0.5F));
+// Returns memory of that size, of an earlier frame if no page has it any more.
+std::shared_ptr<std::string> Encoder::buffer(std::size_t size) {
+  for (std::shared_ptr<std::string>& free : buffers_)
+    if (!free || free.use_count() == 1) {
+      std::atomic_thread_fence(std::memory_order_acquire); // after the last reader
+      if (!free)
+        free = std::make_shared<std::string>();
+      free->resize(size);
+      return free;
+    }
+  return std::make_shared<std::string>(size, '\0');
+}
+
+// Returns the bytes of a frame; `load` gives four particles. Precondition: chosen_ is not empty.
+template<class Load> std::shared_ptr<const std::string> Encoder::pack(const Load& load) {
+  std::shared_ptr<std::string> data = buffer(9 * chosen_.size());
+  follow_values(load);
+  const Extent seen = pack_once(load, *data);
+  if (!fits(seen)) {
+    fit(seen);
+    if (whole_range())
+      follow_values(load);
+    pack_once(load, *data);
+  }
+  return data;
+}
+
+// Writes all particles, and returns their extent: if that does not fit, the bytes are wrong.
+template<class Load> Extent Encoder::pack_once(const Load& load, std::string& data) {
+  make_table();
+  std::array<Four, 5> low, per_unit;
+  for (std::size_t k = 0; k < low.size(); ++k) {
+    const bool is_value = k == value_index;
+    const float from = is_value ? static_cast<float>(range_.low) : extent_.low[k];
+    const float to = is_value ? static_cast<float>(range_.high) : extent_.high[k];
+    const float steps = is_value ? static_cast<float>(table_.size() - 1) : max_number;
+    low[k] = four(from);
+    per_unit[k] = four(to > from ? steps / (to - from) : 0.0F);
+  }
+  LaneExtent seen;
+  const auto number = [&](std::size_t k, Four value, float high) {
+    seen.include(k, value);
+    return __builtin_convertvector(clamped((value - low[k]) * per_unit[k] + four(0.5F), high), FourInts);
   };
-  for (std::size_t k = 0; k < count; ++k) {
-    places[4 * k] = rounded((columns_.places[0][k] - x.low) * in_x);
-    places[4 * k + 1] = rounded((columns_.places[1][k] - y.low) * in_y);
-    places[4 * k + 2] = rounded((columns_.places[2][k] - z.low) * in_z);
-    places[4 * k + 3] = rounded(columns_.radii[k] * in_r);
+  const std::size_t count = chosen_.size();
+  char *place = data.data(), *tone = place + 8 * count;
+  for (std::size_t j = 0; j < count; j += 4) {
+    const auto [lanes, value] = load(FourIndices(chosen_, j));
+    const FourInts xy = number(0, lanes.x, max_number) | number(1, lanes.y, max_number) << 16;
+    const FourInts zr = number(2, lanes.z, max_number) | number(3, lanes.radius, max_number) << 16;
+    const FourInts index = number(value_index, value, static_cast<float>(table_.size() - 1));
+    const FourInts words[2] = {__builtin_shufflevector(xy, zr, 0, 4, 1, 5),
+                               __builtin_shufflevector(xy, zr, 2, 6, 3, 7)};
+    std::uint8_t tones[4];
+    for (int lane = 0; lane < 4; ++lane)
+      tones[lane] = table_[static_cast<std::size_t>(index[lane])];
+    const std::size_t whole = std::min<std::size_t>(4, count - j);
+    if (whole == 4) {
+      std::memcpy(place, words, sizeof words);
+      std::memcpy(tone, tones, sizeof tones);
+    } else {
+      std::memcpy(place, words, 8 * whole);
+      std::memcpy(tone, tones, whole);
+    }
+    place += 8 * whole;
+    tone += whole;
   }
-  std::memcpy(data->data(), places.data(), 8 * count);
-  const render::ColourRange range = next_range();
-  pack_colours(range, reinterpret_cast<std::uint8_t*>(data->data()) + 8 * count);
-  Frame frame;
-  frame.about = {{"count", count},
-                 {"of", total},
-                 {"orbits", orbits},
-                 {"box_m", {box.size_x, box.size_y}},
-                 {"low_m", {x.low, y.low, z.low}},
-                 {"unit_m", {x.unit, y.unit, z.unit, largest / max_uint16}},
-                 {"field", render::colour_field_names()[static_cast<std::size_t>(field_)]},
-                 {"label", label_of(field_)},
-                 {"range", {range.low, range.high}}};
-  frame.data = std::move(data);
-  frame.orbits = orbits;
-  return frame;
+  return seen.extent();
+}
+
+Frame Encoder::frame_of(std::shared_ptr<const std::string> data, std::size_t total, const ShearingBox& box,
+                        double orbits) const {
+  std::array<float, 4> unit{};
+  for (std::size_t k = 0; k < unit.size(); ++k)
+    unit[k] = (extent_.high[k] - extent_.low[k]) / max_number;
+  return {.about = {{"count", chosen_.size()},
+                    {"of", total},
+                    {"orbits", orbits},
+                    {"box_m", {box.size_x, box.size_y}},
+                    {"low_m", {extent_.low[0], extent_.low[1], extent_.low[2]}},
+                    {"unit_m", unit},
+                    {"field", render::colour_field_names()[static_cast<std::size_t>(field_)]},
+                    {"label", label_of(field_)},
+                    {"range", {range_.low, range_.high}}},
+          .data = std::move(data)};
 }
 
 } // namespace keeler::live_view

@@ -103,8 +103,8 @@
     element("low").textContent = Number(low).toPrecision(3);
     element("high").textContent = Number(high).toPrecision(3);
     element("quantity").textContent = about.label;
-    const name = live && state.control ? "now" : names[Number(time.value)] || "";
-    element("moment").textContent = `orbit ${about.orbits.toFixed(live && state.control ? 4 : 2)}${name ? ` (${name})` : ""}`;
+    element("moment").textContent =
+      live && state.control ? "now" : `orbit ${about.orbits.toFixed(2)} (${names[Number(time.value)]})`;
     if (!state.control)
       element("orbits").textContent = `orbit ${about.orbits.toFixed(2)}`;
     element("shown").textContent =

@@ -40,17 +40,23 @@ public:
   LiveView(const LiveView&) = delete;
   LiveView& operator=(const LiveView&) = delete;
 
+  /// Precondition: is_open().
   std::string address() const;
+  bool is_open() const;
+  /// Ends the page, for any thread but the server's; a run that it has paused goes on. Also at destruction.
+  void close();
 
   /// Changes what the page says about the run.
   void set_stage(Stage stage, const std::string& message);
 
-  /// To be called between two steps, where kicks meet. Makes a frame if a page waits for one. Only reads.
+  /// To be called between two steps, where kicks meet. Makes a frame if a page waits for one, and leaves it
+  /// if there is no memory for it. Only reads. Throws Interrupted at the request of an Interruptible.
   void at_boundary(const Simulation& simulation, const Scene& scene);
   /// Returns true if a page wants the run to wait before its next step.
   bool holds() const;
-  /// Waits while holds(), until `ends` returns true. Returns the seconds waited.
-  double wait(const Simulation& simulation, const Scene& scene, const std::function<bool()>& ends);
+  /// Waits while holds(), until `ends` returns true. Returns true if the next step may be done, which a page may have
+  /// allowed for one step alone.
+  bool wait(const Simulation& simulation, const Scene& scene, const std::function<bool()>& ends);
 
   /// The server may read this state until withdraw(). Both must outlive that.
   void offer(const Simulation& simulation, const Scene& scene);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <chrono>
+#include <ctime>
 
 namespace keeler::live_view {
 
@@ -21,13 +22,21 @@ public:
   /// Does the work, which is then due again after a while.
   template<class Work> void spend(const Work& work) {
     const Clock::time_point begin = Clock::now();
+    const double before = thread_seconds();
     work();
-    const double spent = std::chrono::duration<double>(Clock::now() - begin).count();
+    const double spent = thread_seconds() - before;
     next_ = begin + std::chrono::duration_cast<Clock::duration>(
                         std::chrono::duration<double>(std::max(interval_, spent / fraction_)));
   }
 
 private:
+  // Processor time: on a busy machine the work may have waited.
+  static double thread_seconds() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  }
+
   double interval_, fraction_;
   Clock::time_point next_ = Clock::time_point::min();
 };

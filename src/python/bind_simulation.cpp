@@ -266,6 +266,8 @@ void bind_simulation(py::module_& module) {
       .def("record_contacts", &Held::record_contacts, py::arg("minimum_speed"))
       .def("take_contacts", &contacts)
       .def("save", &save, py::arg("file"))
+      .def("open_view", &Held::open_view, py::arg("title"), py::arg("port"))
+      .def("close_view", &Held::close_view)
       .def("counts", &counts)
       .def("works", &works);
 }

@@ -36,7 +36,26 @@ private:
   std::atomic<bool>& flag_;
 };
 
+// Keeps the page from reading the state during its lifetime. Precondition: the caller holds Busy.
+class HeldSimulation::Withdrawn {
+public:
+  explicit Withdrawn(const HeldSimulation& held) : held_(held) {
+    if (held_.view_)
+      held_.view_->withdraw();
+  }
+  ~Withdrawn() {
+    if (held_.view_ && !held_.broken())
+      held_.view_->offer(*held_.simulation_, held_.scene_);
+  }
+  Withdrawn(const Withdrawn&) = delete;
+  Withdrawn& operator=(const Withdrawn&) = delete;
+
+private:
+  const HeldSimulation& held_;
+};
+
 HeldSimulation::~HeldSimulation() {
+  view_.reset();
   if (simulation_ && viewed_state_.use_count() > 1)
     viewed_state_->state = std::move(*simulation_).take_state();
 }
@@ -108,25 +127,74 @@ void HeldSimulation::step_until(std::int64_t until_tick) {
   double elapsed = 0.0;
   const Stopwatch watch(elapsed);
   const auto must_return = [&] {
-    return simulation_->state().step % interval == 0 && (keyboard.stop() || watch.elapsed() > between_signals);
+    return simulation_->state().step % interval == 0 &&
+           (keyboard.stop() || watch.elapsed() > between_signals || stop_asked_ || (view_ && view_->holds()));
   };
   try {
-    do
+    do {
       simulation_->advance();
-    while (simulation_->state().step < until_tick && !must_return());
+      if (view_ && simulation_->state().step % interval == 0)
+        view_->at_boundary(*simulation_, scene_);
+    } while (simulation_->state().step < until_tick && !must_return());
   } catch (const InvariantError& error) {
     broken_ = error;
     throw;
   }
 }
 
+// Waits while a page has paused or slowed the run.
+void HeldSimulation::wait_for_view() {
+  for (bool may_step = !view_; !may_step;) {
+    {
+      const Keyboard keyboard;
+      const Unlocked unlocked;
+      double elapsed = 0.0;
+      const Stopwatch watch(elapsed);
+      may_step = view_->wait(*simulation_, scene_,
+                             [&] { return keyboard.stop() || stop_asked_ || watch.elapsed() > between_signals; });
+    }
+    raise_interrupts();
+    raise_stop();
+  }
+}
+
+// A page that stops a run does what Ctrl-C does.
+void HeldSimulation::raise_stop() {
+  if (!stop_asked_.exchange(false))
+    return;
+  PyErr_SetString(PyExc_KeyboardInterrupt, "stopped from the view");
+  throw pybind11::error_already_set();
+}
+
+std::string HeldSimulation::open_view(const std::string& title, int port) {
+  whole_state();
+  const Busy here(busy_);
+  if (!view_ || !view_->is_open()) {
+    view_ = std::make_unique<live_view::LiveView>(live_view::ViewOptions{.title = title,
+                                                                         .path = {},
+                                                                         .port = port,
+                                                                         .stop = [this] { stop_asked_ = true; },
+                                                                         .stage = live_view::Stage::idle});
+    view_->offer(*simulation_, scene_);
+  }
+  return view_->address();
+}
+
+void HeldSimulation::close_view() {
+  if (view_)
+    view_->close();
+}
+
 void HeldSimulation::advance(std::int64_t until_tick) {
   whole_state();
   const Busy here(busy_);
   require_own_threads();
+  stop_asked_ = false;
+  const Withdrawn from_the_page(*this);
   detach_views();
   simulation::SimulationState before;
   while (simulation_->state().step < until_tick) {
+    wait_for_view();
     try {
       change(before, [&] { step_until(until_tick); });
     } catch (const InvariantError&) {
@@ -136,6 +204,7 @@ void HeldSimulation::advance(std::int64_t until_tick) {
       throw;
     }
     raise_interrupts();
+    raise_stop();
   }
 }
 
@@ -143,6 +212,7 @@ void HeldSimulation::replace(Particles particles) {
   whole_state();
   const Busy here(busy_);
   require_own_threads();
+  const Withdrawn from_the_page(*this);
   detach_views();
   simulation::SimulationState before;
   change(before, [&] {

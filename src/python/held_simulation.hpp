@@ -5,6 +5,7 @@
 #include "contact_record.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/live_view/live_view.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <pybind11/pybind11.h>
@@ -59,6 +60,11 @@ public:
   /// Replaces the particles. If it throws, the state is unchanged.
   void replace(Particles particles);
 
+  /// Shows the simulation in a page, and returns its address; of the open one, if there is one. Throws Error.
+  std::string open_view(const std::string& title, int port);
+  /// Ends the page, if there is one, from any thread; a run that it has paused goes on.
+  void close_view();
+
   /// Records contacts of at least this normal speed (m/s) from now on; none: stops recording.
   void record_contacts(std::optional<double> minimum_speed);
   /// Calls take(rows) with the contacts since the last call, and drops them unless it throws.
@@ -73,9 +79,12 @@ public:
 
 private:
   class Busy;
+  class Withdrawn;
   void require_idle() const;
   void detach_views();
   void step_until(std::int64_t until_tick);
+  void wait_for_view();
+  void raise_stop();
   template<class Change> void change(simulation::SimulationState& before, const Change& change);
 
   Scene scene_;
@@ -85,6 +94,8 @@ private:
   std::atomic<bool> busy_ = false;
   bool put_back_ = false;                // the state was restored: the simulation can only be read
   std::optional<InvariantError> broken_; // the broken invariant
+  std::unique_ptr<live_view::LiveView> view_;
+  std::atomic<bool> stop_asked_ = false; // by a page
 };
 
 } // namespace keeler::python

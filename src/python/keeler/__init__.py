@@ -23,6 +23,7 @@ Contents:
 - ``Run``: the folder of a run, from ``run`` or ``read(folder)``: series, snapshots, summary. ``sweep`` makes many runs.
 - ``analyze()`` of each of these returns ``Numbers``; ``quantities`` lists their units and meanings.
 - ``Columns`` and ``Rows``: the tables of runs and sweeps; ``to_pandas()`` and ``to_xarray()`` where these are installed.
+- ``Simulation.view`` and ``widget``: a page that shows it as it runs (``View``).
 - ``render``: a picture of any of them.
 - ``add_force``, ``add_restitution_law``, ``add_size_law``, ``add_start``, ``add_quantity``, ``add_series_column``:
   physics and numbers of your own, called by name; ``Key`` declares a number of theirs.
@@ -71,10 +72,12 @@ from .runs import Run, program, read, render, run, sweep
 from .simulation import ELEMENTS, Simulation, from_arrays, load, resume
 from .snapshots import Picture, Snapshot, generate, start_from_arrays, tile
 from .tables import Columns, Rows
+from .views import View, close_all as _close_all
 
 Kick = _core.Kick
 __version__ = _core.version()
 
+_atexit.register(_close_all)  # called after the next one: no thread computes then
 _atexit.register(_core.end_other_threads)  # the interpreter would end computing daemon threads inside C++
 
 __all__ = [
@@ -95,6 +98,7 @@ __all__ = [
     "Snapshot",
     "StartRequest",
     "UsageError",
+    "View",
     "add_force",
     "add_quantity",
     "add_restitution_law",

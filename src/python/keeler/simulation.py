@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import _arguments, _core, scenes, snapshots
+from . import _arguments, _core, scenes, snapshots, views
 from .errors import UsageError
 from .snapshots import Snapshot
 
@@ -301,6 +301,19 @@ class Simulation:
             display(picture)
             return None
         return picture
+
+    def view(self, port=0):
+        """Shows the simulation, as it runs, in a page for browsers of this machine, and returns a View: its ``address``,
+        and ``close()``. The page has the particles in 3-D, plots that grow, and buttons to pause, step and stop: a stop
+        is a KeyboardInterrupt in ``run`` or ``step``. Nothing is computed for a page that is not looked at, and no result
+        depends on it. ``port`` is that of the address (0: a free one). A second call returns the open page. Raises
+        RunError when there is none to be had."""
+        return views.open_view(self._core, repr(self)[1:-1], port, None)
+
+    def widget(self, height=900, port=0):
+        """As view(), shown in place where a notebook displays it, ``height`` pixels tall. The notebook's browser must run
+        on this machine, or see its ports."""
+        return views.open_view(self._core, repr(self)[1:-1], port, height)
 
     def _repr_png_(self):
         return self.plot(width=1000)._repr_png_()
