@@ -11,11 +11,13 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/json_of_files.hpp>
+#include <keeler/core/threads.hpp>
 #include <keeler/render/colour_field.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cassert>
@@ -36,9 +38,9 @@ using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 using render::ColourField;
 
-// Of the run's time, frames take no more than this part: 10⁵ particles take 0.7 ms, which leaves the 20 frames per
-// second that a page asks for.
+// Of the run's processor time, frames and the server take no more than this part.
 constexpr double frame_interval = 0.045, fraction_of_frames = 0.015;
+constexpr double max_charge = 5e-3; // s per frame of the server's time: frames do not wait long for a look at the past
 constexpr auto turn = std::chrono::milliseconds(20); // in which a waiting run looks whether it ends
 constexpr double max_limit = 1e4;                    // steps per second
 constexpr std::size_t field_count = 6;
@@ -156,6 +158,7 @@ private:
   std::string message_;
   std::vector<Slot> slots_;
   Throttle frames_{frame_interval, fraction_of_frames};
+  double charged_ = 0.0; // of server_seconds_
   std::uint64_t last_number_ = 0;
   bool rough_ = false; // the particles have spins
   bool paused_ = false;
@@ -172,6 +175,7 @@ private:
   std::atomic<bool> attention_ = false;
   std::atomic<std::uint64_t> version_ = 1; // of the state in memory
   std::atomic<double> orbits_ = 0.0;
+  std::atomic<double> server_seconds_ = 0.0; // processor time of the server's thread
 
   // of the server's thread
   Past past_;
@@ -249,8 +253,11 @@ void LiveView::Shared::at_boundary(const Simulation& simulation, const Scene& sc
   if (!attention_.load(std::memory_order_relaxed) || !is_own_process())
     return;
   const std::lock_guard lock(guard_);
-  if (frames_.due())
-    frames_.spend([&] { make_frames(simulation, scene); });
+  if (frames_.due()) {
+    const double served = server_seconds_.load(std::memory_order_relaxed);
+    frames_.spend([&] { make_frames(simulation, scene); },
+                  std::min(served - std::exchange(charged_, served), max_charge), threads());
+  }
   if (rows_wanted_ && series_.is_sampled() && series_.sample_due()) {
     series_.sample(simulation, scene);
     rows_wanted_ = false;
@@ -429,6 +436,7 @@ std::optional<Reply> LiveView::Shared::command(const Request& request) {
 }
 
 std::optional<Reply> LiveView::Shared::answer(const Request& request) {
+  server_seconds_.store(thread_seconds(), std::memory_order_relaxed);
   if (request.is_command)
     return command(request);
   if (request.path.empty())

@@ -32,7 +32,7 @@ public:
   std::shared_ptr<const std::string> text();
 
 private:
-  static constexpr double fraction = 0.003; // of the time
+  static constexpr double fraction = 0.0015; // of the time
 
   std::filesystem::path folder_;
   io::SeriesTable table_;
