@@ -32,6 +32,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr unsigned max_connections = 64;
 constexpr std::size_t connection_bytes = 16384; // for a request's lines
+constexpr int unread_bytes = 1 << 20;           // that the system keeps for a client that does not read
 constexpr unsigned idle_s = 10;
 // A connection that has sent no whole request after the first time, or whose request has no whole answer after the
 // second, is cut: a client that sends or reads a byte now and then is never idle.
@@ -180,6 +181,8 @@ void PageServer::Connections::cut_late_ones() {
   const Clock::time_point now = Clock::now();
   for (auto& [connection, state] : open_)
     if (state.socket >= 0 && now - state.since > (state.has_asked ? next_request : first_request)) {
+      const linger at_once{.l_onoff = 1, .l_linger = 0}; // drop what the client has not read
+      setsockopt(state.socket, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
       shutdown(state.socket, SHUT_RDWR); // libmicrohttpd closes it
       state.socket = -1;
     }
@@ -188,10 +191,13 @@ void PageServer::Connections::cut_late_ones() {
 void PageServer::Connections::on_connection(void* self, MHD_Connection* connection, void**,
                                             MHD_ConnectionNotificationCode change) {
   auto& open = static_cast<Connections*>(self)->open_;
-  if (change == MHD_CONNECTION_NOTIFY_STARTED)
-    open[connection].socket = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
-  else
+  if (change != MHD_CONNECTION_NOTIFY_STARTED) {
     open.erase(connection);
+    return;
+  }
+  const int socket = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
+  setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &unread_bytes, sizeof unread_bytes);
+  open[connection].socket = socket;
 }
 
 void PageServer::Connections::on_answered(void* self, MHD_Connection* connection, void** state,

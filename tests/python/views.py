@@ -1,0 +1,90 @@
+"""What the tests of the live view share: a program that shows something, and requests as bytes."""
+
+import json
+import os
+import socket
+import subprocess
+import time
+
+KEELER = os.environ["KEELER_PROGRAM"]
+
+SCENE = """
+title = "A ring of </script> & spins"
+planet.preset = "saturn-a-ring"
+box.size = [60.0, 60.0]
+particles = { optical_depth = 0.4, density = 450.0, sizes = { law = "power", min = 0.5, max = 2.0, exponent = 3.0 } }
+collisions = { restitution = { law = "constant", value = 0.5 }, friction = { tangential_restitution = 0.2 } }
+gravity = { solver = "tree", kick_every = 1 }
+time = { step = 2e-3, end = 1.0 }
+output = { snapshot_every = 0.2, series_every = 0.01 }
+"""
+
+
+class Viewed:
+    """`keeler view ARGUMENT...`, which runs until it is left."""
+
+    def __init__(self, *arguments, **options):
+        self.process = subprocess.Popen(
+            [KEELER, "view", *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options
+        )
+        self.address = self.process.stdout.readline().strip()
+        if not self.address:
+            raise AssertionError(self.process.communicate()[1])
+        self.host, self.token = self.address.split("/")[2:4]
+        self.port = int(self.host.split(":")[1])
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        if self.process.poll() is None:
+            self.process.terminate()
+        self.out, self.err = self.process.communicate(timeout=60)
+
+    def connect(self, timeout=10):
+        return socket.create_connection(("127.0.0.1", self.port), timeout)
+
+    def request(self, path, method="GET", host=None, headers=(), token=None):
+        """A well-formed request below the token, as bytes."""
+        lines = [f"{method} /{self.token if token is None else token}/{path} HTTP/1.1",
+                 f"Host: {self.host if host is None else host}", "Connection: close", *headers, "", ""]
+        return "\r\n".join(lines).encode()
+
+    def answer(self, data, timeout=10):
+        """All that the server says to these bytes."""
+        said = b""
+        try:
+            with self.connect(timeout) as connection:
+                connection.sendall(data)
+                while part := connection.recv(1 << 16):
+                    said += part
+        except (ConnectionError, TimeoutError):
+            pass
+        return said
+
+    def get(self, path, method="GET"):
+        """The body of a good answer."""
+        said = self.answer(self.request(path, method))
+        head, _, body = said.partition(b"\r\n\r\n")
+        if not head.startswith(b"HTTP/1.1 200 "):
+            raise AssertionError(said[:300])
+        return body
+
+    def state(self):
+        return json.loads(self.get("state"))
+
+    def frame(self, colour="speed", have=0):
+        """The head of a frame, and its bytes."""
+        body = self.get(f"frame?colour={colour}&have={have}")
+        size = int.from_bytes(body[:4], "little")
+        return json.loads(body[4 : 4 + size]), body[4 + size :]
+
+    def wait_for(self, condition, seconds=30):
+        """Returns the first state that meets the condition."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            state = self.state()
+            if condition(state):
+                return state
+            time.sleep(0.02)
+        raise AssertionError(f"not met within {seconds} s: {state}")
