@@ -48,11 +48,13 @@
     choice.value = fields.includes(chosen) ? chosen : "height";
   }
 
+  const isOfFiles = (what) => ["files", "finished"].includes(what.stage);
+
   // The last position of the slider is the present: in files it is the last snapshot.
   function fillTime(next) {
     const live = Number(time.value) === Number(time.max);
     names = next.snapshots;
-    const last = ["files", "finished", "stopped"].includes(next.stage) ? Math.max(names.length - 1, 0) : names.length;
+    const last = isOfFiles(next) ? Math.max(names.length - 1, 0) : names.length;
     if (Number(time.max) !== last) {
       time.max = String(last);
       if (live)
@@ -67,7 +69,7 @@
     fillTime(next);
     element("stage-name").textContent = next.paused && next.control ? "Paused" : labels[next.stage];
     element("message").textContent = next.message;
-    if (next.control)
+    if (!isOfFiles(next))
       element("orbits").textContent = `orbit ${next.orbits.toFixed(4)}`;
     element("control").hidden = !next.control;
     element("pause").textContent = next.paused ? "Resume" : "Pause";
@@ -104,8 +106,8 @@
     element("high").textContent = Number(high).toPrecision(3);
     element("quantity").textContent = about.label;
     element("moment").textContent =
-      live && state.control ? "now" : `orbit ${about.orbits.toFixed(2)} (${names[Number(time.value)]})`;
-    if (!state.control)
+      live && !isOfFiles(state) ? "now" : `orbit ${about.orbits.toFixed(2)} (${names[Number(time.value)]})`;
+    if (isOfFiles(state))
       element("orbits").textContent = `orbit ${about.orbits.toFixed(2)}`;
     element("shown").textContent =
       (about.count < about.of ? `${about.count} of ${about.of} particles` : `All ${about.of} particles`) + stageHelp;
@@ -143,7 +145,7 @@
         if (live) {
           await ask(`frame?colour=${field}&have=${have}`, true);
           asked = "";
-          if (["files", "finished"].includes(state.stage))
+          if (isOfFiles(state))
             interval = stateInterval;
         } else if (asked !== `${time.value} ${field}`) {
           asked = `${time.value} ${field}`;

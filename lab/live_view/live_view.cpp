@@ -354,7 +354,7 @@ Reply LiveView::Shared::frame(const Request& request) {
   bool in_memory = false;
   {
     const std::lock_guard lock(guard_);
-    in_memory = has_state();
+    in_memory = has_state() || stage_ == Stage::stopped;
     if (in_memory) {
       Slot& slot = slots_[static_cast<std::size_t>(field)];
       slot.wanted = true; // also if there is one: it is made while the page gets that

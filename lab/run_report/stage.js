@@ -166,7 +166,7 @@ function makeStage(parent, colours) {
     draw();
   }
 
-  window.addEventListener("resize", fit);
+  new ResizeObserver(fit).observe(parent);
   return { setBox: setBox, setParticles: setParticles, look: look, fit: fit, draw: draw, drawSoon: drawSoon };
 }
 

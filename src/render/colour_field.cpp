@@ -108,8 +108,12 @@ std::vector<double> particle_densities(const Patch& patch) {
   const DensityMap map(patch);
   std::vector<double> values;
   values.reserve(patch.size());
-  for (const Vec3& position : patch.positions)
-    values.push_back(map.at(position.x(), position.y()));
+  for (const Vec3& position : patch.positions) { // or of its image in the box: only guiding centres are inside
+    const double columns = std::floor(position.x() / patch.box.size_x + 0.5);
+    const double y = position.y() + columns * patch.offset;
+    values.push_back(map.at(position.x() - columns * patch.box.size_x,
+                            y - patch.box.size_y * std::floor(y / patch.box.size_y + 0.5)));
+  }
   return values;
 }
 

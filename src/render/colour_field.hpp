@@ -41,7 +41,7 @@ struct ColourRange {
 /// have the field.
 std::vector<double> field_values(const Patch& patch, ColourField field);
 
-/// Returns the surface density (kg/m²) where each particle is, from the map.
+/// Returns the surface density (kg/m²) where each particle is, from the map of the box and its images.
 std::vector<double> particle_densities(const Patch& patch);
 
 /// Returns the range from the 1st to the 99th percentile, or the full range of sizes and clusters. Precondition:

@@ -123,7 +123,7 @@ class Attacks(unittest.TestCase):
                   view.request("resume", "POST", headers=["Content-Length: 99999999999999"]),
                   view.request("resume", "POST", headers=["Transfer-Encoding: chunked"]) + b"ffffff\r\n" + b"x" * 0xFFFFFF,
                   view.request("", headers=["Content-Length: 4"]) + b"abcd"]
-        self.refused("bodies", bodies)
+        self.refused("bodies", bodies, timeout=2)
 
     def test_malformed(self):
         view = self.view
@@ -135,7 +135,7 @@ class Attacks(unittest.TestCase):
                     b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03" + b"\0" * 600,
                     b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n", good.replace(b"HTTP/1.1", b"HTTP/1.1\0"),
                     view.request("resume", "POST\0", token="0" * 32)]  # libmicrohttpd takes it for POST
-        self.refused("malformed requests", requests, timeout=2)
+        self.refused("malformed requests", requests, timeout=0.5)
 
     def test_only_this_machine(self):
         with open("/proc/net/tcp") as table:
@@ -157,7 +157,7 @@ class Attacks(unittest.TestCase):
 class Crowds(unittest.TestCase):
     """Many connections that never end their requests, or never read the answers."""
 
-    def crowd(self, count, what, scene=SCENE, seconds=9):
+    def crowd(self, count, what, scene=SCENE, seconds=7):
         with tempfile.TemporaryDirectory() as folder:
             Path(folder, "scene.toml").write_text(scene)
             with Viewed(Path(folder, "scene.toml"), "--set", "time.end=1000") as view:

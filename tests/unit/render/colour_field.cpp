@@ -37,6 +37,31 @@ Patch three() { // two of them touch
 
 } // namespace
 
+TEST_CASE("a particle has the density of the map where it, or its image in the box, is") {
+  Patch patch = three();
+  for (int k = 0; k < 400; ++k) { // an even background
+    patch.ids.push_back(patch.size());
+    patch.positions.emplace_back(-47.5 + 5.0 * (k % 20), -28.5 + 3.0 * (k / 20), 0.0);
+    patch.velocities.emplace_back(0.0, 0.0, 0.0);
+    patch.radii.push_back(1.0);
+    patch.masses.push_back(15.0);
+  }
+  const std::vector<double> inside = particle_densities(patch);
+  for (const double value : inside)
+    CHECK(value >= 0.0);
+  for (std::size_t k = 0; k < 3; ++k)
+    CHECK(inside[k] > 5.0 * inside[3]); // the heavy ones, and one of the background far away
+  for (const int n : {-1, 1})
+    for (const int m : {-1, 0, 2}) {
+      Patch moved = patch;
+      for (std::size_t k = 0; k < moved.size(); k += 3)
+        moved.positions[k] += Vec3(n * box.size_x, m * box.size_y - n * patch.offset, 0.0);
+      const std::vector<double> values = particle_densities(moved);
+      for (std::size_t k = 0; k < 3; ++k)
+        CHECK(values[k] == doctest::Approx(inside[k]).epsilon(1e-9));
+    }
+}
+
 TEST_CASE("the fields of a picture have their values and units") {
   Patch patch = three();
   CHECK(field_values(patch, ColourField::size) == patch.radii);
