@@ -1,4 +1,4 @@
-// Who may talk to the server of the page: the token in the address, and the names by which a request calls the server.
+// Access to the server of the page: the token in the address, and the names by which a request calls the server.
 // Both are decided here, without any library, so that tests can try every case.
 #pragma once
 
@@ -27,9 +27,9 @@ public:
   /// Returns the address of the page.
   std::string address() const;
 
-  /// Returns the path below the token, as "frame"; none for a wrong token, for a Host that is not this server on the
-  /// loopback address (a page of elsewhere whose name was made to point here says its own name), for several Hosts, and
-  /// for an Origin that is not this server.
+  /// Returns the path below the token, as "frame". Returns none for a wrong token, for another Host than this server on
+  /// the loopback address, for several Hosts, and for an Origin that is not this server. A page of another site says
+  /// its own name as Host, even if that name was made to point to this machine (DNS rebinding).
   std::optional<std::string> admit(const Claim& claim) const;
 
 private:

@@ -71,7 +71,7 @@ bool Encoder::whole_range() const { // the few extreme values matter
   return field_ == ColourField::size || field_ == ColourField::cluster;
 }
 
-// Chooses all particles, or those with ids that are multiples of a number.
+// Chooses all particles, or the particles with ids that are multiples of a number.
 void Encoder::choose(const std::vector<std::uint64_t>& ids) {
   const std::uint64_t every = (ids.size() + max_shown - 1) / max_shown;
   if (every == 1 && chosen_.size() == ids.size() && chosen_.back() + 1 == ids.size())

@@ -38,7 +38,7 @@ using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 using render::ColourField;
 
-// Of the run's processor time, frames and the server take no more than this part.
+// Limits the part of the run's processor time that frames and the server take.
 constexpr double frame_interval = 0.045, fraction_of_frames = 0.015;
 constexpr double max_charge = 5e-3; // s per frame of the server's time: frames do not wait long for a look at the past
 constexpr auto turn = std::chrono::milliseconds(20); // in which a waiting run looks whether it ends
@@ -171,7 +171,7 @@ private:
   bool rows_wanted_ = false;
   bool told_ = true; // a page knows the stage
 
-  // without the guard, so that a run that nobody watches does not wait for it
+  // without the guard, so that an unwatched run does not wait for it
   std::atomic<bool> attention_ = false;
   std::atomic<std::uint64_t> version_ = 1; // of the state in memory
   std::atomic<double> orbits_ = 0.0;

@@ -49,7 +49,7 @@ public:
   /// Changes what the page says about the run.
   void set_stage(Stage stage, const std::string& message);
 
-  /// To be called between two steps, where kicks meet. Makes a frame if a page waits for one, and leaves it
+  /// Call it between two steps, where kicks meet. Makes a frame if a page waits for one, and leaves it
   /// if there is no memory for it. Only reads. Throws Interrupted at the request of an Interruptible.
   void at_boundary(const Simulation& simulation, const Scene& scene);
   /// Returns true if a page wants the run to wait before its next step.

@@ -1,4 +1,4 @@
-// In place of page_server.cpp where libmicrohttpd is missing.
+// Replaces page_server.cpp where libmicrohttpd is missing.
 #include "page_server.hpp"
 
 #include <keeler/core/error.hpp>

@@ -34,8 +34,8 @@ constexpr unsigned max_connections = 64;
 constexpr std::size_t connection_bytes = 16384; // for a request's lines
 constexpr int unread_bytes = 1 << 20;           // that the system keeps for a client that does not read
 constexpr unsigned idle_s = 10;
-// A connection that has sent no whole request after the first time, or whose request has no whole answer after the
-// second, is cut: a client that sends or reads a byte now and then is never idle.
+// Limits on the time until the first whole request of a connection, and until the whole answer to each further one. A
+// limit on idle time alone would not do: a client may send or read a byte now and then.
 constexpr auto first_request = std::chrono::seconds(5), next_request = std::chrono::seconds(20);
 constexpr std::uint64_t turn_ms = 100;
 

@@ -1,5 +1,5 @@
-// A small HTTP server on the loopback address, for one page: it knows who may ask (access.hpp) and how much, and
-// nothing of what is answered. One thread serves all connections and waits for none of them.
+// A small HTTP server on the loopback address, for one page. It checks access (access.hpp) and limits what a connection
+// takes; the content comes from a function. One thread serves all connections and waits for none of them.
 #pragma once
 
 #include <functional>

@@ -42,7 +42,7 @@ void SeriesFeed::refresh(Past& past) {
       if (std::filesystem::exists(file))
         table_ = io::read_series(file);
       scale_ = past.scale();
-    } catch (const Error&) { // as while a run begins anew in the folder
+    } catch (const Error&) { // as while a new run begins in the folder
       table_ = {};
     }
   });

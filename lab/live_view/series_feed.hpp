@@ -1,5 +1,5 @@
 // The growing series of a run, as the data that plots.js draws: from series.csv of its folder, or from rows that are
-// sampled from a simulation in memory while somebody looks.
+// sampled from a simulation in memory while a page asks.
 #pragma once
 
 #include "past.hpp"
@@ -28,7 +28,7 @@ public:
 
   /// Reads the folder if it is time. `past` has the scale of the series.
   void refresh(Past& past);
-  /// Returns the JSON of the plots, which is written anew at times.
+  /// Returns the JSON of the plots, which is updated at times.
   std::shared_ptr<const std::string> text();
 
 private:

@@ -1,4 +1,4 @@
-// Work that is repeated while somebody looks, but takes only a small part of the time.
+// Repeated work that takes only a small part of the time.
 #pragma once
 
 #include <algorithm>
