@@ -58,9 +58,9 @@ public:
   /// allowed for one step alone.
   bool wait(const Simulation& simulation, const Scene& scene, const std::function<bool()>& ends);
 
-  /// The server may read this state until withdraw(). Both must outlive that.
-  void offer(const Simulation& simulation, const Scene& scene);
-  void withdraw();
+  /// Lets the server read this state until withdraw(), which waits until it does not. Both must outlive that.
+  void offer(const Simulation& simulation, const Scene& scene) noexcept;
+  void withdraw() noexcept;
 
   /// Waits until a page has got what set_stage() said, or a second has passed without one.
   void linger() const;

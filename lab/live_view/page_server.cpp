@@ -14,6 +14,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <new>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -195,6 +196,11 @@ void PageServer::Connections::on_connection(void* self, MHD_Connection* connecti
     open.erase(connection);
     return;
   }
+  try {
+    open[connection] = {};
+  } catch (const std::bad_alloc&) {
+    return; // it may stay as long as it likes
+  }
   const int socket = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
   setsockopt(socket, SOL_SOCKET, SO_SNDBUF, &unread_bytes, sizeof unread_bytes);
   open[connection].socket = socket;
@@ -214,13 +220,17 @@ MHD_Result PageServer::Connections::on_request(void* self, MHD_Connection* conne
                                                const char* method, const char*, const char*, std::size_t* content_size,
                                                void** state) {
   *content_size = 0;
-  if (has_content(connection)) // answered before the content comes: then libmicrohttpd closes the connection
-    return send(connection, MHD_HTTP_NOT_FOUND, {});
-  if (!*state) { // the header alone; answered at the next call, so that the connection stays
-    *state = self;
-    return MHD_YES;
+  try {
+    if (has_content(connection)) // answered before the content comes: then libmicrohttpd closes the connection
+      return send(connection, MHD_HTTP_NOT_FOUND, {});
+    if (!*state) { // the header alone; answered at the next call, so that the connection stays
+      *state = self;
+      return MHD_YES;
+    }
+    return static_cast<Connections*>(self)->respond(connection, url, method);
+  } catch (...) { // no memory; libmicrohttpd, which is in C, cannot pass it on
+    return MHD_NO;
   }
-  return static_cast<Connections*>(self)->respond(connection, url, method);
 }
 
 MHD_Result PageServer::Connections::respond(MHD_Connection* connection, const char* url, const char* method) {

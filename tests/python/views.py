@@ -1,10 +1,13 @@
 """What the tests of the live view share: a program that shows something, and requests as bytes."""
 
+import http.client
 import json
 import os
 import socket
 import subprocess
+import tempfile
 import time
+from pathlib import Path
 
 KEELER = os.environ["KEELER_PROGRAM"]
 
@@ -88,3 +91,24 @@ class Viewed:
                 return state
             time.sleep(0.02)
         raise AssertionError(f"not met within {seconds} s: {state}")
+
+
+def in_folder(test):
+    folder = tempfile.TemporaryDirectory()
+    test.addCleanup(folder.cleanup)
+    (Path(folder.name) / "scene.toml").write_text(SCENE)
+    return Path(folder.name)
+
+
+def ask(view, path, method="GET"):
+    """The answer to a page of sim.view()."""
+    host, token = view.address.split("/")[2:4]
+    connection = http.client.HTTPConnection(host, timeout=20)
+    try:
+        connection.request(method, f"/{token}/{path}")
+        body = connection.getresponse().read()
+    finally:
+        connection.close()
+    if path.startswith("frame"):
+        return json.loads(body[4 : 4 + int.from_bytes(body[:4], "little")])
+    return json.loads(body)

@@ -308,12 +308,12 @@ class Simulation:
         is a KeyboardInterrupt in ``run`` or ``step``. Nothing is computed for a page that is not looked at, and no result
         depends on it. ``port`` is that of the address (0: a free one). A second call returns the open page. Raises
         RunError when there is none to be had."""
-        return views.open_view(self._core, repr(self)[1:-1], port, None)
+        return views.open_view(self._core, f"Keeler: {len(self)} particles", port, None)
 
     def widget(self, height=900, port=0):
         """As view(), shown in place where a notebook displays it, ``height`` pixels tall. The notebook's browser must run
         on this machine, or see its ports."""
-        return views.open_view(self._core, repr(self)[1:-1], port, height)
+        return views.open_view(self._core, f"Keeler: {len(self)} particles", port, height)
 
     def _repr_png_(self):
         return self.plot(width=1000)._repr_png_()

@@ -8,8 +8,10 @@
 
 #include <doctest/doctest.h>
 
+#include <chrono>
 #include <map>
 #include <sstream>
+#include <thread>
 
 namespace run_test {
 
@@ -79,6 +81,28 @@ TEST_CASE("checkpoints come by the step and by the clock, and the clock changes 
   CHECK(number(work / "clock") == "checkpoint_000019.h5");
   run(work / "kicks", {"time.end=0.1", "output.checkpoint_every_minutes=1e-12", "gravity.kick_every=4"});
   CHECK(number(work / "kicks") == "checkpoint_000004.h5");
+}
+
+TEST_CASE("an observer is called where kicks meet, and what it waits for is no part of a step") {
+  const TemporaryFolder work;
+  RunRequests requests;
+  RunOptions options;
+  options.folder = work / "observed";
+  std::vector<std::int64_t> steps;
+  options.observe = [&](const Simulation& simulation) {
+    steps.push_back(simulation.state().step);
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
+  };
+  double remaining_s = 0.0;
+  options.progress = [&](const RunProgress& progress) {
+    if (progress.step == 10)
+      remaining_s = progress.remaining_s;
+  };
+  const Scene scene = small_scene({"time.end=0.1", "gravity.kick_every=4"});
+  const RunResult observed = start_run(scene, options, requests);
+  CHECK(steps == std::vector<std::int64_t>{0, 4, 8, 12, 16, 20});
+  CHECK(remaining_s < 0.5 * 0.15 * 10.0 / 4.0); // the waits alone would take twice that
+  CHECK(observed.state_hash == run(work / "alone", {"time.end=0.1", "gravity.kick_every=4"}).state_hash);
 }
 
 TEST_CASE("a finished run is left as it is, with a notice") {
