@@ -4,7 +4,7 @@ find_package(PkgConfig REQUIRED)
 foreach(package IN LISTS KEELER_CMAKE_PACKAGES)
   separate_arguments(package)
   list(POP_FRONT package target)
-  if(target STREQUAL "MPI::MPI_C" AND NOT KEELER_MPI)
+  if((target STREQUAL "MPI::MPI_C" AND NOT KEELER_MPI) OR target STREQUAL "embree") # KeelerEmbree.cmake
     continue()
   endif()
   find_package(${package} REQUIRED)

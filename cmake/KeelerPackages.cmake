@@ -11,7 +11,8 @@ set(KEELER_CMAKE_PACKAGES
   "nlohmann_json::nlohmann_json nlohmann_json 3.11"
   "tomlplusplus::tomlplusplus tomlplusplus"
   "CLI11::CLI11 CLI11 2.1"
-  "MPI::MPI_C MPI COMPONENTS C") # with KEELER_MPI alone
+  "MPI::MPI_C MPI COMPONENTS C" # with KEELER_MPI alone
+  "embree embree 3.13 CONFIG") # with KEELER_EMBREE alone
 
 # Target and module of pkg-config, one entry a package.
 set(KEELER_PKGCONFIG_MODULES

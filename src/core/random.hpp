@@ -18,7 +18,8 @@ enum class RandomPurpose : std::uint32_t {
   contact = 7,
   thinning = 8,
   aggregate = 9,
-  shuffle = 10
+  shuffle = 10,
+  light = 11
 };
 
 /// Philox4x64-10 (Salmon et al. 2011) with seed and purpose as key, and the id and a draw counter as counter.
