@@ -1,0 +1,174 @@
+#include "light_options.hpp"
+
+#include "common_options.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/units.hpp>
+#include <keeler/files/columns.hpp>
+#include <keeler/files/files.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace keeler::cli {
+namespace {
+
+constexpr double from_degrees = pi / 180.0;
+constexpr double lowest_sight = 0.1; // degrees, as of analyze --elevation
+constexpr double usual_phase = 6.0;  // degrees: the largest that is seen from Earth
+
+// Sights with names, each from a source that gives its angles.
+struct NamedSights {
+  const char* name;
+  std::vector<double> elevations, phases; // degrees; the Sun has the elevation of the observer
+};
+
+const std::vector<NamedSights>& named_sights() {
+  static const std::vector<NamedSights> all = {
+      // Hubble Space Telescope: elevations near which Poulet et al. (2002, Icarus 158, 224) and French et al. (2007,
+      // PASP
+      // 119, 623) have phase curves from 0 to 6 degrees, after Salo & French (2010, Icarus 210, 785)
+      {"hubble-10", {10.0}, {0.3, 0.5, 1.0, 2.0, 4.0, 6.0}},
+      {"hubble-23", {23.0}, {0.02, 0.1, 0.3, 0.5, 1.0, 2.0, 4.0, 6.0}},
+      // the range of elevations of those images (French et al. 2005, BAAS 37, 671: 3 < |B| < 26), at the largest phase
+      {"hubble-tilt", {3.0, 4.5, 10.0, 15.0, 20.0, 23.0, 26.0}, {6.0}},
+  };
+  return all;
+}
+
+CLI::Validator elevation() {
+  const auto refusal = [](const std::string& text) {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    return *end == '\0' && end != text.c_str() && std::fabs(value) >= lowest_sight && std::fabs(value) <= 90.0
+               ? std::string()
+               : "'" + text + "' is not an elevation from 0.1 to 90 degrees, or from -90 to -0.1";
+  };
+  return CLI::Validator(refusal, "");
+}
+
+CLI::Option* add_angles(CLI::App& command, const char* name, std::vector<double>& angles, const char* meaning) {
+  return command.add_option(name, angles, meaning)->delimiter(',')->allow_extra_args(false)->type_name("DEGREES,...");
+}
+
+light::Sight sight(double elevation_degrees, double azimuth, double sun_elevation, double phase) {
+  return light::sight_at_phase({elevation_degrees * from_degrees, azimuth * from_degrees}, sun_elevation * from_degrees,
+                               phase * from_degrees);
+}
+
+// Reads a table of observations: elevation, azimuth or longitude, sun_elevation, phase; in degrees.
+std::vector<light::Sight> sights_of_file(const std::string& file) {
+  const files::Columns table = files::parse_columns(files::read_text(file), file);
+  const auto column = [&](const char* name) -> const std::vector<double>* {
+    const auto found = std::find(table.names.begin(), table.names.end(), name);
+    return found == table.names.end() ? nullptr : &table.values[static_cast<std::size_t>(found - table.names.begin())];
+  };
+  const auto required = [&](const char* name) {
+    const std::vector<double>* const values = column(name);
+    if (!values)
+      throw UsageError(
+          fmt::format("{}:{}: there is no column '{}'; observations have the columns elevation, azimuth (or "
+                      "longitude), sun_elevation and phase, in degrees",
+                      file, table.header_line, name));
+    return values;
+  };
+  const std::vector<double>*const elevations = required("elevation"), *const suns = required("sun_elevation"),
+                                  *const phases = required("phase");
+  const std::vector<double>* const longitudes = column("longitude");
+  const std::vector<double>* const azimuths = longitudes ? longitudes : required("azimuth");
+  std::vector<light::Sight> sights;
+  for (std::size_t row = 0; row < elevations->size(); ++row) {
+    const auto fail = [&](const std::string& what) {
+      throw UsageError(fmt::format("{}:{}: {}", file, table.lines[row], what));
+    };
+    for (const double angle : {(*elevations)[row], (*suns)[row]})
+      if (!(std::fabs(angle) >= lowest_sight && std::fabs(angle) <= 90.0))
+        fail(fmt::format("the elevation {:g} is not from 0.1 to 90 degrees or from -90 to -0.1; correct it", angle));
+    if (!(std::fabs((*azimuths)[row]) <= 720.0))
+      fail(fmt::format("{:g} is not an azimuth in degrees; correct it", (*azimuths)[row]));
+    try {
+      sights.push_back(
+          sight((*elevations)[row], (longitudes ? -1.0 : 1.0) * (*azimuths)[row], (*suns)[row], (*phases)[row]));
+    } catch (const UsageError& error) {
+      fail(error.what());
+    }
+  }
+  if (sights.empty())
+    throw UsageError(fmt::format("'{}' has no row; give at least one observation", file));
+  return sights;
+}
+
+} // namespace
+
+void LawOptions::add_to(CLI::App& command, CLI::Option* needs) {
+  std::string words;
+  for (const light::LawEntry& entry : light::law_entries())
+    words += fmt::format("{}{}{}", words.empty() ? "" : "|", entry.name,
+                         *entry.parameter ? fmt::format("[={}]", entry.parameter) : "");
+  CLI::Option* const law =
+      command.add_option("--law", name, "scattering law of the particles (default: callisto)")->type_name(words);
+  CLI::Option* const of_law = command.add_option("--albedo", albedo, "their single scattering albedo (default: 0.5)")
+                                  ->check(positive_number(1.0));
+  if (needs) {
+    law->needs(needs);
+    of_law->needs(needs);
+  }
+}
+
+void SightGrid::add_to(CLI::App& command) {
+  CLI::Option* const elevation_option =
+      add_angles(command, "--elevation", elevations,
+                 "elevations of the observer above the ring plane; below 0: the other face")
+          ->check(elevation());
+  CLI::Option* const azimuth =
+      add_angles(command, "--azimuth", azimuths,
+                 "azimuths of the observer, from the radius to the orbital motion (default: every 10 in half a turn)")
+          ->check(number_between(-360.0, 360.0, "an azimuth"));
+  CLI::Option* const sun =
+      add_angles(command, "--sun-elevation", sun_elevations, "elevations of the Sun (default: that of the observer)")
+          ->check(elevation())
+          ->needs(elevation_option);
+  CLI::Option* const phase = add_angles(command, "--phase", phases, "phase angles (default: 6)")
+                                 ->check(number_between(0.0, 180.0, "a phase angle"))
+                                 ->needs(elevation_option);
+  CLI::Option* const file =
+      command
+          .add_option(
+              "--observations", observations,
+              "a table of observations: columns elevation, azimuth or longitude, sun_elevation, phase, in degrees")
+          ->type_name("FILE");
+  std::vector<std::string> names;
+  for (const NamedSights& one : named_sights())
+    names.emplace_back(one.name);
+  CLI::Option& name = one_of(command.add_option("--geometry", geometry, "sights of published observations"), names);
+  for (CLI::Option* const option : {elevation_option, azimuth, sun, phase})
+    file->excludes(option);
+  for (CLI::Option* const option : {elevation_option, sun, phase, file})
+    name.excludes(option);
+}
+
+std::vector<light::Sight> SightGrid::sights() const {
+  if (!observations.empty())
+    return sights_of_file(observations);
+  std::vector<double> of_observer = elevations, of_phase = phases, of_azimuth = azimuths;
+  for (const NamedSights& one : named_sights())
+    if (geometry == one.name)
+      of_observer = one.elevations, of_phase = one.phases;
+  if (of_observer.empty())
+    throw UsageError("there is no sight; give --elevation, --observations or --geometry");
+  if (of_phase.empty())
+    of_phase = {usual_phase};
+  if (of_azimuth.empty())
+    for (int k = 0; k < 18; ++k)
+      of_azimuth.push_back(10.0 * k);
+  std::vector<light::Sight> sights;
+  for (const double observer : of_observer)
+    for (const double sun : sun_elevations.empty() ? std::vector<double>{observer} : sun_elevations)
+      for (const double phase : of_phase)
+        for (const double azimuth : of_azimuth)
+          sights.push_back(sight(observer, azimuth, sun, phase));
+  return sights;
+}
+
+} // namespace keeler::cli

@@ -1,0 +1,35 @@
+// Options about observer, Sun and scattering law, of photometry and of render --lit.
+#pragma once
+
+#include <keeler/light/photometry.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace keeler::cli {
+
+/// --law NAME[=VALUE] and --albedo VALUE.
+struct LawOptions {
+  std::string name = "callisto";
+  double albedo = 0.5;
+
+  void add_to(CLI::App& command, CLI::Option* needs = nullptr);
+  light::SharedLaw law() const { return light::law_named(name, albedo); }
+};
+
+/// A grid of sights, or those of a file, or named ones.
+struct SightGrid {
+  std::vector<double> elevations, azimuths, sun_elevations, phases; ///< degrees
+  std::string observations, geometry;
+
+  void add_to(CLI::App& command);
+
+  /// Returns the sights, azimuths fastest. Throws UsageError for a phase angle that elevations do not allow, with the
+  /// line of the file if there is one.
+  std::vector<light::Sight> sights() const;
+};
+
+} // namespace keeler::cli
