@@ -52,6 +52,12 @@ CLI::Option* add_angles(CLI::App& command, const char* name, std::vector<double>
   return command.add_option(name, angles, meaning)->delimiter(',')->allow_extra_args(false)->type_name("DEGREES,...");
 }
 
+std::vector<double> radians(std::vector<double> degrees) {
+  for (double& angle : degrees)
+    angle *= from_degrees;
+  return degrees;
+}
+
 light::Sight sight(double elevation_degrees, double azimuth, double sun_elevation, double phase) {
   return light::sight_at_phase({elevation_degrees * from_degrees, azimuth * from_degrees}, sun_elevation * from_degrees,
                                phase * from_degrees);
@@ -162,13 +168,7 @@ std::vector<light::Sight> SightGrid::sights() const {
   if (of_azimuth.empty())
     for (int k = 0; k < 18; ++k)
       of_azimuth.push_back(10.0 * k);
-  std::vector<light::Sight> sights;
-  for (const double observer : of_observer)
-    for (const double sun : sun_elevations.empty() ? std::vector<double>{observer} : sun_elevations)
-      for (const double phase : of_phase)
-        for (const double azimuth : of_azimuth)
-          sights.push_back(sight(observer, azimuth, sun, phase));
-  return sights;
+  return light::sight_grid(radians(of_observer), radians(sun_elevations), radians(of_phase), radians(of_azimuth));
 }
 
 } // namespace keeler::cli

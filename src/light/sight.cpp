@@ -52,6 +52,17 @@ Sight sight_at_phase(const Bearing& observer, double sun_elevation, double phase
   return {observer, {sun_elevation, observer.azimuth + std::acos(std::clamp(cosine, -1.0, 1.0))}};
 }
 
+std::vector<Sight> sight_grid(std::span<const double> elevations, std::span<const double> sun_elevations,
+                              std::span<const double> phases, std::span<const double> azimuths) {
+  std::vector<Sight> sights;
+  for (const double& elevation : elevations)
+    for (const double sun : sun_elevations.empty() ? std::span(&elevation, 1) : sun_elevations)
+      for (const double phase : phases)
+        for (const double azimuth : azimuths)
+          sights.push_back(sight_at_phase({elevation, azimuth}, sun, phase));
+  return sights;
+}
+
 std::optional<BrightnessAsymmetry> brightness_asymmetry(std::span<const Photometry> of_one_elevation) {
   constexpr int terms = 1 + 2 * azimuth_harmonics;
   const auto count = static_cast<Eigen::Index>(of_one_elevation.size());

@@ -6,6 +6,7 @@
 namespace keeler::python {
 
 void bind_errors(pybind11::module_& module);
+void bind_light(pybind11::module_& module);
 void bind_scene(pybind11::module_& module);
 void bind_snapshot(pybind11::module_& module);
 void bind_simulation(pybind11::module_& module);

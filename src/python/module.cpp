@@ -62,4 +62,5 @@ PYBIND11_MODULE(_core, module) {
   python::bind_run(module);
   python::bind_own_forces(module);
   python::bind_own_physics(module);
+  python::bind_light(module);
 }

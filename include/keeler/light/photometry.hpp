@@ -47,6 +47,11 @@ struct Sight {
 /// motion). Throws UsageError, with the possible range, if the elevations do not allow the phase angle. All in rad.
 Sight sight_at_phase(const Bearing& observer, double sun_elevation, double phase);
 
+/// Returns the sights of a grid of angles (rad), azimuths fastest, then phases. Without elevations of the Sun it has
+/// that of the observer. Throws UsageError as sight_at_phase().
+std::vector<Sight> sight_grid(std::span<const double> elevations, std::span<const double> sun_elevations,
+                              std::span<const double> phases, std::span<const double> azimuths);
+
 /// How a measurement is made.
 struct PhotometrySettings {
   SharedLaw law;                     ///< of all particles

@@ -238,6 +238,23 @@ def add_start(
 ) -> None: ...
 def add_quantity(name: str, unit: str, function: Callable[[Snapshot], float], meaning: str = "") -> None: ...
 def add_series_column(name: str, unit: str, function: Callable[[Snapshot], float], meaning: str = "") -> None: ...
+
+def photometry(
+    what: Snapshot | Simulation | Run | _Path,
+    elevation: float | Sequence[float],
+    azimuth: float | Sequence[float] | None = None,
+    *,
+    sun_elevation: float | Sequence[float] | None = None,
+    phase: float | Sequence[float] = 6.0,
+    law: str | Callable[[float], float] = "callisto",
+    albedo: float = 0.5,
+    rays: int = 100000,
+    error: float | None = None,
+    seed: int = 1,
+    since: float | None = None,
+    until: float | None = None,
+) -> list[Numbers]: ...
+
 def threads() -> int: ...
 def set_threads(count: int) -> None: ...
 def add_restitution_law(name: str, function: Any) -> None: ...
