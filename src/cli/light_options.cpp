@@ -37,7 +37,7 @@ const std::vector<NamedSights>& named_sights() {
   return all;
 }
 
-CLI::Validator elevation() {
+CLI::Validator elevation_range() {
   const auto refusal = [](const std::string& text) {
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
@@ -58,7 +58,7 @@ std::vector<double> radians(std::vector<double> degrees) {
   return degrees;
 }
 
-light::Sight sight(double elevation_degrees, double azimuth, double sun_elevation, double phase) {
+light::Sight sight_of_degrees(double elevation_degrees, double azimuth, double sun_elevation, double phase) {
   return light::sight_at_phase({elevation_degrees * from_degrees, azimuth * from_degrees}, sun_elevation * from_degrees,
                                phase * from_degrees);
 }
@@ -94,8 +94,8 @@ std::vector<light::Sight> sights_of_file(const std::string& file) {
     if (!(std::fabs((*azimuths)[row]) <= 720.0))
       fail(fmt::format("{:g} is not an azimuth in degrees; correct it", (*azimuths)[row]));
     try {
-      sights.push_back(
-          sight((*elevations)[row], (longitudes ? -1.0 : 1.0) * (*azimuths)[row], (*suns)[row], (*phases)[row]));
+      sights.push_back(sight_of_degrees((*elevations)[row], (longitudes ? -1.0 : 1.0) * (*azimuths)[row], (*suns)[row],
+                                        (*phases)[row]));
     } catch (const UsageError& error) {
       fail(error.what());
     }
@@ -122,18 +122,38 @@ void LawOptions::add_to(CLI::App& command, CLI::Option* needs) {
   }
 }
 
+void LitSight::add_to(CLI::App& command, CLI::Option* lit) {
+  const auto add = [&](const char* name, auto& angle, const char* meaning) {
+    return command.add_option(name, angle, meaning)->type_name("DEGREES")->needs(lit);
+  };
+  add("--elevation", elevation, "elevation of the observer; below 0: the other face (default: 20)")
+      ->check(elevation_range());
+  add("--azimuth", azimuth, "azimuth of the observer, from the radius to the orbital motion (default: -60)")
+      ->check(number_between(-360.0, 360.0, "an azimuth"));
+  add("--sun-elevation", sun_elevation, "elevation of the Sun (default: that of the observer)")
+      ->check(elevation_range());
+  add("--phase", phase, "phase angle (default: 60)")->check(number_between(0.0, 180.0, "a phase angle"));
+  command.add_option("--samples", samples, "rays per pixel (default: 8)")
+      ->transform(whole_number_between(1, 10000, "a number of rays"))
+      ->needs(lit);
+}
+
+light::Sight LitSight::sight() const {
+  return sight_of_degrees(elevation, azimuth, sun_elevation.value_or(elevation), phase);
+}
+
 void SightGrid::add_to(CLI::App& command) {
   CLI::Option* const elevation_option =
       add_angles(command, "--elevation", elevations,
                  "elevations of the observer above the ring plane; below 0: the other face")
-          ->check(elevation());
+          ->check(elevation_range());
   CLI::Option* const azimuth =
       add_angles(command, "--azimuth", azimuths,
                  "azimuths of the observer, from the radius to the orbital motion (default: every 10 in half a turn)")
           ->check(number_between(-360.0, 360.0, "an azimuth"));
   CLI::Option* const sun =
       add_angles(command, "--sun-elevation", sun_elevations, "elevations of the Sun (default: that of the observer)")
-          ->check(elevation())
+          ->check(elevation_range())
           ->needs(elevation_option);
   CLI::Option* const phase = add_angles(command, "--phase", phases, "phase angles (default: 6)")
                                  ->check(number_between(0.0, 180.0, "a phase angle"))

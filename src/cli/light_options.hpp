@@ -20,6 +20,17 @@ struct LawOptions {
   light::SharedLaw law() const { return light::law_named(name, albedo); }
 };
 
+/// One sight, of a picture.
+struct LitSight {
+  double elevation = 20.0, azimuth = -60.0, phase = 60.0; ///< degrees
+  std::optional<double> sun_elevation;                    ///< degrees; none: that of the observer
+  int samples = 8;                                        ///< rays per pixel
+
+  void add_to(CLI::App& command, CLI::Option* lit);
+  /// Throws UsageError for a phase angle that the elevations do not allow.
+  light::Sight sight() const;
+};
+
 /// A grid of sights, or those of a file, or named ones.
 struct SightGrid {
   std::vector<double> elevations, azimuths, sun_elevations, phases; ///< degrees

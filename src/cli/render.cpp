@@ -1,6 +1,7 @@
 // keeler render: draws a snapshot, the last state of a run, or its series.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "light_options.hpp"
 #include "progress_line.hpp"
 #include "results.hpp"
 #include "signals.hpp"
@@ -29,7 +30,9 @@ struct RenderOptions {
   std::optional<std::string> output;
   std::string path, colour = "height", theme = "dark";
   int width = render::PictureOptions().width;
-  bool oblique = false, movie = false, series = false;
+  bool oblique = false, movie = false, series = false, lit = false;
+  LitSight sight;
+  LawOptions law{.name = "lambert", .albedo = 0.5};
 };
 
 constexpr std::string_view png_signature = "\x89PNG";
@@ -52,6 +55,12 @@ render::PictureOptions picture_options(const RenderOptions& options) {
   picture.theme = options.theme == "light" ? render::PictureTheme::light : render::PictureTheme::dark;
   picture.colour = render::colour_field_named(options.colour);
   picture.oblique = options.oblique;
+  if (options.lit) {
+    light::require_tracer();
+    picture.lit = render::LitLook{options.sight.sight(), options.law.law(),
+                                  fmt::format("{}, albedo {}", options.law.name, format_number(options.law.albedo)),
+                                  options.sight.samples};
+  }
   return picture;
 }
 
@@ -135,6 +144,14 @@ void add_render(CLI::App& program, Action& action) {
                                                 "view the patch from 35 degrees above its plane instead of from above");
   CLI::Option* const movie = command.add_flag(
       "--movie", options->movie, "draw all snapshots of a run at one scale: movie.mp4, by the program ffmpeg");
+  CLI::Option* const lit =
+      command
+          .add_flag("--lit", options->lit,
+                    "draw what an observer sees in sunlight: shadows, and light scattered more than once")
+          ->excludes(colour)
+          ->excludes(oblique);
+  options->sight.add_to(command, lit);
+  options->law.add_to(command, lit);
   command
       .add_flag(
           "--series", options->series,
@@ -142,10 +159,13 @@ void add_render(CLI::App& program, Action& action) {
           "errors")
       ->excludes(movie)
       ->excludes(colour)
-      ->excludes(oblique);
+      ->excludes(oblique)
+      ->excludes(lit);
   examples_of(command, {"keeler render wakes --oblique --colour speed",
                         "keeler render wakes --theme light --width 2000 -o figure.png", "keeler render wakes --movie",
-                        "keeler render wakes --series --theme light -o series.svg"});
+                        "keeler render wakes --series --theme light -o series.svg",
+                        "keeler render wakes --lit --elevation 15 --azimuth -70 --phase 60 -o lit.png",
+                        "keeler render wakes --lit --elevation 30 --law callisto --movie"});
   command.callback([options, &action] {
     action = [options] {
       return unless_stopped("stopped before all was drawn (on request); no part of a picture or a movie is left",

@@ -66,7 +66,8 @@ void render_movie(std::size_t count, const std::function<Patch(std::size_t)>& pa
   require_movie_name(path);
   PhaseProgress progress(report);
   PictureOptions look = options;
-  look.scale = common_scale(count, patch, options.colour, progress);
+  if (!options.lit) // its scale is the same for all
+    look.scale = common_scale(count, patch, options.colour, progress);
   progress.begin("pictures", static_cast<double>(count));
   std::unique_ptr<Mp4> movie;
   int width = 0, height = 0;

@@ -1,5 +1,6 @@
 #include <keeler/render/patch_picture.hpp>
 
+#include "lit_page.hpp"
 #include "patch_page.hpp"
 #include "patch_views.hpp"
 
@@ -158,6 +159,8 @@ std::unique_ptr<plot::Page> patch_page(const Patch& patch, const PictureOptions&
                                  asked.width, min_picture_width, max_picture_width));
   if (asked.oblique && asked.colour == ColourField::density)
     throw UsageError("no oblique view of the surface density: it is a map seen from above; choose another field");
+  if (asked.lit)
+    return lit_page(patch, asked);
   PictureOptions options = asked;
   if (!options.scale)
     options.scale = picture_scale(patch, options.colour);

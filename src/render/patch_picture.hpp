@@ -4,6 +4,7 @@
 
 #include <keeler/particles/patch.hpp>
 #include <keeler/render/colour_field.hpp>
+#include <keeler/render/lit_look.hpp>
 
 #include <cstddef>
 #include <optional>
@@ -32,6 +33,7 @@ struct PictureOptions {
   bool oblique = false;                             ///< the upper view is from oblique_elevation instead of from above
   static constexpr double oblique_elevation = 35.0; ///< degrees above the plane
   std::optional<PictureScale> scale;                ///< none: picture_scale() of the patch
+  std::optional<LitLook> lit; ///< instead of both views: the patch as an observer sees it in sunlight
 };
 
 inline constexpr int min_picture_width = 200, max_picture_width = 8000; // pixels

@@ -1,0 +1,17 @@
+// How a patch in sunlight is pictured.
+#pragma once
+
+#include <keeler/light/photometry.hpp>
+
+#include <string>
+
+namespace keeler::render {
+
+struct LitLook {
+  light::Sight sight;   ///< where observer and Sun are
+  light::SharedLaw law; ///< of the particles
+  std::string law_text; ///< in the caption: "lambert, albedo 0.5"
+  int samples = 8;      ///< rays per pixel
+};
+
+} // namespace keeler::render
