@@ -15,6 +15,7 @@
 #include <keeler/initial_conditions/possible.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/io/snapshot.hpp>
+#include <keeler/light/photometry.hpp>
 #include <keeler/render/patch_picture.hpp>
 #include <keeler/report/html.hpp>
 #include <keeler/runs/measured_part.hpp>
@@ -105,10 +106,10 @@ void thin_out(std::vector<Patch>& patches) {
   patches = std::move(some);
 }
 
-std::string figure(const Patch& patch, const std::vector<std::byte>& png) {
-  return fmt::format("<figure><img alt=\"the patch at orbit {0}\" src=\"data:image/png;base64,{1}\">"
-                     "<figcaption>orbit {0}</figcaption></figure>\n",
-                     format_number(patch.time_orbits, 4), report::base64(png));
+std::string figure(const Patch& patch, const std::vector<std::byte>& png, const char* how = "") {
+  return fmt::format("<figure><img alt=\"the patch at orbit {0}{2}\" src=\"data:image/png;base64,{1}\">"
+                     "<figcaption>orbit {0}{2}</figcaption></figure>\n",
+                     format_number(patch.time_orbits, 4), report::base64(png), how);
 }
 
 class RunPage {
@@ -122,6 +123,7 @@ public:
 private:
   void read_snapshots();
   std::string pictures();
+  std::string lit_picture(render::PictureOptions look) const;
   std::string view() const;
   std::string plots(const runs::TransportReport& transport) const;
   std::string measured(runs::MeasuredPart part);
@@ -182,7 +184,17 @@ std::string RunPage::pictures() {
   look.width = picture_width;
   const std::string last = figure(pictured_.back(), picture_within(picture_bytes, pictured_.back(), look));
   progress_.add(1.0);
-  return section("pictures", "The patch", last + "<div class=\"earlier\">\n" + earlier + "</div>\n");
+  return section("pictures", "The patch",
+                 last + lit_picture(look) + "<div class=\"earlier\">\n" + earlier + "</div>\n");
+}
+
+// Draws the newest snapshot in sunlight, as keeler render --lit does by default; nothing in a Keeler without Embree.
+std::string RunPage::lit_picture(render::PictureOptions look) const {
+  if (!light::can_trace())
+    return {};
+  look.width = picture_width;
+  look.lit = render::usual_lit_look();
+  return figure(pictured_.back(), picture_within(picture_bytes, pictured_.back(), look), ", in sunlight");
 }
 
 std::string RunPage::view() const {

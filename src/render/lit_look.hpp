@@ -14,4 +14,8 @@ struct LitLook {
   int samples = 8;      ///< rays per pixel
 };
 
+/// Returns the look that pictures have where nothing else is asked for: observer and Sun 20° above the plane, the
+/// observer at the azimuth −60°, phase 60°, Lambert spheres of albedo 0.5.
+LitLook usual_lit_look();
+
 } // namespace keeler::render

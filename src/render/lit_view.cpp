@@ -2,6 +2,7 @@
 
 #include <keeler/core/parallel.hpp>
 #include <keeler/core/random.hpp>
+#include <keeler/core/units.hpp>
 #include <keeler/light/path.hpp>
 
 #include <Eigen/Geometry>
@@ -26,6 +27,12 @@ struct Camera {
 };
 
 } // namespace
+
+LitLook usual_lit_look() {
+  constexpr double degree = pi / 180.0;
+  return {light::sight_at_phase({20.0 * degree, -60.0 * degree}, 20.0 * degree, 60.0 * degree), light::lambert_law(0.5),
+          "lambert, albedo 0.5"};
+}
 
 double white_level(const LitLook& look) {
   const Vec3 observer = look.sight.observer.direction(), sun = look.sight.sun.direction();
