@@ -34,6 +34,7 @@ void add_help(CLI::App& program, Action& action);
 void add_info(CLI::App& program, Action& action);
 void add_convert(CLI::App& program, Action& action);
 void add_analyze(CLI::App& program, Action& action);
+void add_occultation(CLI::App& program, Action& action);
 void add_photometry(CLI::App& program, Action& action);
 void add_new(CLI::App& program, Action& action);
 void add_render(CLI::App& program, Action& action);

@@ -77,6 +77,7 @@ void add_commands(CLI::App& program, Action& action, const std::vector<std::stri
   add_report(program, action);
   add_analyze(program, action);
   add_photometry(program, action);
+  add_occultation(program, action);
   add_convert(program, action);
   group(program, "Look");
   add_study(program, action, arguments);

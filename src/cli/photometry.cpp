@@ -11,6 +11,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/json_of_files.hpp>
+#include <keeler/core/units.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/files/new_file.hpp>
 #include <keeler/light/photometry_record.hpp>

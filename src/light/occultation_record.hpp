@@ -1,0 +1,20 @@
+// The numbers of an occultation, by name.
+#pragma once
+
+#include <keeler/light/footprints.hpp>
+#include <keeler/light/wake_model.hpp>
+#include <keeler/quantities/quantity.hpp>
+
+namespace keeler::light {
+
+/// Returns the numbers of a line of sight but for the autocovariance; angles in degrees.
+quantities::Record record_of(const FootprintStatistics& statistics);
+
+/// Returns the numbers of a fit.
+quantities::Record record_of(const FittedWakes& fit);
+
+/// Returns the quantities in such records.
+std::vector<quantities::Quantity> occultation_quantities();
+std::vector<quantities::Quantity> wake_model_quantities();
+
+} // namespace keeler::light
