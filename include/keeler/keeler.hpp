@@ -40,6 +40,10 @@
 #include <keeler/diagnostics/clusters.hpp>
 #include <keeler/diagnostics/occultation.hpp>
 #include <keeler/diagnostics/transmission.hpp>
+#include <keeler/light/footprints.hpp>
+#include <keeler/light/photometry.hpp>
+#include <keeler/light/scattering.hpp>
+#include <keeler/light/wake_model.hpp>
 #include <keeler/quantities/quantity.hpp>
 #include <keeler/statistics/measured.hpp>
 

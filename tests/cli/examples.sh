@@ -12,6 +12,7 @@ follow() {
   while read -r program command; do
     [ "$program" = keeler ] || { fail "$1: not a command of keeler: $program $command"; continue; }
     [[ $command == sweep* ]] && continue
+    [[ $command == *--lit* ]] && "$keeler" occultation nothing --elevation 20 2>&1 | grep -q "without Embree" && continue
     [[ $command == run* ]] && command+=" --set time.end=0.002"
     command=${command/ --clumped/}
     # shellcheck disable=SC2086 # several words

@@ -65,7 +65,8 @@ rows::Page page() {
           .tail = R"(
 ## Not compared
 
-- The brightness asymmetry of Saturn's A ring in images (French et al. 2007): it needs scattered light.
+- Of the light of Saturn's rings: the amplitude of the asymmetry at each elevation (French et al. 2007, their figures), phase curves with
+  the surfaces' own opposition effect (Salo & French 2010), and scans of the unlit face (Porco et al. 2008).
 )"};
 }
 

@@ -3,6 +3,8 @@
 #include "states.hpp"
 
 #include <keeler/core/threads.hpp>
+#include <keeler/light/photometry.hpp>
+#include <keeler/light/tracer.hpp>
 
 #include <doctest/doctest.h>
 
@@ -53,6 +55,31 @@ TEST_CASE("each ray is blocked as by all spheres and images in space") {
           wrong += (blocked[ray] != 0) != blocked_in_space(patch, sight, rays.position(ray), 4) ? 1 : 0;
         CHECK(wrong == 0);
       }
+}
+
+TEST_CASE("rays marked by shadows are those that Embree finds blocked") {
+  if (!light::can_trace())
+    return;
+  const ShearingBox sheared{240.0, 170.0, 1.5, 0.0};
+  Patch patch = test::uniform(sheared, 43.0, 1500, 3);
+  for (std::size_t k = 0; k < patch.size(); ++k)
+    patch.radii[k] = 0.3 + 0.3 * static_cast<double>(k % 4);
+  const light::Tracer tracer(patch);
+  for (const double elevation : {4.0, 20.0, 65.0, 90.0})
+    for (const double azimuth : {0.0, 111.0, -40.0}) {
+      const LineOfSight sight{elevation * degree, azimuth * degree};
+      const Vec3 to_star = light::Bearing{sight.elevation, sight.azimuth}.direction();
+      const RayLattice rays(sheared, 20000, 20.0);
+      const std::vector<std::uint8_t> marked = rays.blocked(patch, sight);
+      std::size_t different = 0;
+      for (std::size_t ray = 0; ray < rays.size(); ++ray) {
+        const Vec3 start = rays.position(ray) + tracer.cell().bottom() / to_star.z() * to_star;
+        different += tracer.blocked(start, to_star) != (marked[ray] != 0) ? 1 : 0;
+      }
+      CAPTURE(elevation);
+      CAPTURE(azimuth);
+      CHECK(different <= 2); // of limbs within the rounding of single precision
+    }
 }
 
 TEST_CASE("a lattice has one ray a cell and whole footprints") {

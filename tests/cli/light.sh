@@ -1,0 +1,91 @@
+#!/bin/bash
+# light.sh KEELER SOURCE_DIR: photometry, occultation and render --lit from outside: tables, figures, bad input, stops. A Keeler
+# without Embree says what is missing.
+# shellcheck source=tests/cli/helpers.sh
+source "$(dirname "$0")/helpers.sh"
+small_scene
+runs 0 run "$work/scene.toml" -o "$work/run" --set time.end=0.02 --set output.snapshot_every=0.01
+snap=$work/run/snap_000000.hdf
+
+if "$keeler" photometry "$snap" --elevation 20 2>&1 | grep -q "without Embree"; then
+  refuses_with 1 "photometry without Embree" "libembree-dev" photometry "$snap" --elevation 20
+  refuses_with 1 "occultation without Embree" "libembree-dev" occultation "$snap" --elevation 20
+  refuses_with 1 "a lit picture without Embree" "libembree-dev" render "$snap" --lit -o "$work/lit.png"
+  report
+  exit
+fi
+
+accepts "photometry" photometry "$work/run" --since 0 --elevation 20,-30 --sun-elevation 15 --phase 60 --azimuth 0,40 --rays 8192 --json --threads 1
+cp "$work/out" "$work/one.json"
+accepts "photometry on two threads" photometry "$work/run" --since 0 --elevation 20,-30 --sun-elevation 15 --phase 60 --azimuth 0,40 --rays 8192 --json --threads 2
+cmp -s "$work/out" "$work/one.json" || fail "photometry: other numbers on two threads"
+python3 - "$work/one.json" <<'EOF' || fail "photometry: the JSON is not as it says"
+import json, math, sys
+found = json.load(open(sys.argv[1]))
+assert found["law"] == "callisto" and found["snapshots"] == 3 and not found["stopped"]
+assert [s["observer_elevation_degrees"] for s in found["sights"]] == [20, 20, -30, -30]
+for s in found["sights"]:
+    assert abs(s["phase_degrees"] - 60) < 1e-6 and s["rays"] == 8192
+    assert abs(s["reflectance"] - s["single_scattering"] - s["multiple_scattering"]) < 1e-12
+    assert 0 < s["reflectance_error"] < s["reflectance"] and 0 < s["transmission"] < 1
+assert len(found["azimuthal_asymmetry"]) == 2 and found["azimuthal_asymmetry"][0]["asymmetry"] is None
+EOF
+accepts "a table" photometry "$snap" --elevation 20 --rays 8192 --csv "$work/table.csv" --figure "$work/figure.svg"
+[ "$(wc -l <"$work/table.csv")" -eq 19 ] || fail "the table has not 18 rows"
+head -1 "$work/table.csv" | grep -q "reflectance,.*reflectance_error" || fail "the table has other columns"
+prints "asymmetry" "darkest at the longitudes"
+grep -q "<svg" "$work/figure.svg" || fail "no figure"
+accepts "an error" photometry "$snap" --elevation 20 --azimuth 0 --error 0.02 --law lambert --albedo 1 --json
+printf 'elevation longitude sun_elevation phase\n10 250 10 6\n# a comment\n-20 90 20 60\n' >"$work/seen.txt"
+accepts "observations" photometry "$snap" --observations "$work/seen.txt" --rays 100 --json
+grep -q '"ring_longitude_degrees": 250' "$work/out" || fail "observations: not at longitude 250: $(cat "$work/out")"
+accepts "a published geometry" photometry "$snap" --geometry hubble-tilt --azimuth 0 --rays 100
+accepts "other laws" photometry "$snap" --elevation 20 --azimuth 0 --law henyey_greenstein=-0.3 --rays 100
+
+refuses "no sight" "give --elevation, --observations or --geometry" photometry "$snap"
+refuses "a ray in the plane" "is not an elevation" photometry "$snap" --elevation 0
+refuses "an impossible phase" "the phase angle is from 10 to 150 degrees, not 3" photometry "$snap" --elevation 20 --sun-elevation 10 --phase 3
+refuses "another law" "did you mean 'lambert'?" photometry "$snap" --elevation 20 --law lambret
+refuses "a law out of range" "give a number from" photometry "$snap" --elevation 20 --law henyey_greenstein=2
+refuses "rays and an error" "excludes" photometry "$snap" --elevation 20 --rays 5 --error 0.1
+printf 'elevation,longitude,sun_elevation,phase\n10,250,10,6\n10,250,30,6\n' >"$work/bad.csv"
+refuses "an impossible observation" "bad.csv:3: with the observer" photometry "$snap" --observations "$work/bad.csv"
+printf 'elevation,phase\n10,6\n' >"$work/bad.csv"
+refuses "a missing column" "bad.csv:1: there is no column 'sun_elevation'" photometry "$snap" --observations "$work/bad.csv"
+refuses "a figure of another kind" "give it one of these endings" photometry "$snap" --elevation 20 --figure "$work/a.jpg"
+
+accepts "occultation" occultation "$work/run" --since 0 --elevation 10,30 --azimuth 0,60,120 --tracks 20 --json
+python3 - "$work/out" <<'EOF' || fail "occultation: the JSON is not as it says"
+import json, sys
+found = json.load(open(sys.argv[1]))
+assert len(found["lines_of_sight"]) == 6
+for s in found["lines_of_sight"]:
+    assert len(s["autocovariance"]) == 33 and abs(s["autocovariance"][0] - s["excess_variance"]) < 1e-15
+    assert 0 < s["transmission"] < 1 and s["effective_radius_m"] > 0
+assert found["wake_model"]["gap_to_width"] > 0
+EOF
+printf 'elevation,longitude,normal_optical_depth\n10,0,0.4\n30,60,0.5\n20,100,0.45\n40,10,0.5\n60,50,0.5\n' >"$work/uvis.csv"
+accepts "occultations beside observed ones" occultation "$snap" --observations "$work/uvis.csv" --section ellipse --tracks 20
+prints "the observed wakes" "wakes observed: H/W"
+refuses "no line of sight" "give --elevation or --observations" occultation "$snap"
+printf 'elevation,longitude,transmission\n10,0,1.4\n' >"$work/bad.csv"
+refuses "a transmission above 1" "bad.csv:2: the transmission 1.4 is not from 0 to 1" occultation "$snap" --observations "$work/bad.csv"
+
+accepts "a lit picture" render "$snap" --lit --width 300 --samples 1 -o "$work/lit.png"
+accepts "the unlit face" render "$snap" --lit --elevation -20 --sun-elevation 20 --width 300 --samples 1 --law callisto -o "$work/dark.png"
+cmp -s "$work/lit.png" "$work/dark.png" && fail "both faces look alike"
+accepts "a lit movie" render "$work/run" --lit --width 300 --samples 1 --movie -o "$work/lit.mp4"
+refuses "light without --lit" "equires" render "$snap" --phase 20 -o "$work/b.png"
+refuses "a lit density" "excludes" render "$snap" --lit --colour density -o "$work/b.png"
+
+# A stop gives what is done.
+"$keeler" photometry "$snap" --elevation 20 --azimuth 0,1,2,3 --rays 1000000000 --json >"$work/out" 2>"$work/err" &
+child=$!
+sleep 1.5
+kill -INT $child
+code=0
+wait $child || code=$?
+[ "$code" -eq 75 ] || fail "a stop: exit $code"
+grep -q '"stopped": true' "$work/out" || fail "a stop: $(cat "$work/out")"
+grep -q "stopped (on request) with 1 of 4 sights" "$work/err" || fail "a stop: $(cat "$work/err")"
+report

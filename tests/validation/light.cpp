@@ -1,0 +1,286 @@
+// Light scattered by layers and wakes: exact solutions in the limit of thin layers, conservation, and what is
+// published.
+#include "rows.hpp"
+
+#include "unit/light/chandrasekhar.hpp"
+#include "unit/light/states.hpp"
+
+#include <keeler/core/units.hpp>
+#include <keeler/light/photometry.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler::validation {
+namespace {
+
+using light::Photometry, light::Sight;
+
+constexpr double in_rad = pi / 180.0;
+constexpr double dilute = 5e-4; // filling factor
+constexpr std::size_t thin_layer_spheres = 200'000;
+
+Photometry seen(std::span<const Patch> patches, const Sight& sight, const light::SharedLaw& law, std::uint64_t rays) {
+  light::PhotometrySettings settings;
+  settings.law = law;
+  settings.rays = rays;
+  return light::photometry(patches, {&sight, 1}, settings).front();
+}
+
+// A row of a ratio: a tolerance of four standard errors, and of the state's finite number of spheres.
+Row ratio_row(const std::string& what, const Estimate& found, double expected, double of_state, const char* source,
+              const std::string& command) {
+  return {.what = what,
+          .measured = found.value / expected,
+          .error = found.error / expected,
+          .expected = 1.0,
+          .tolerance = 4.0 * found.error / expected + of_state,
+          .tolerance_is = "4 standard errors, and the chance of the places",
+          .source = source,
+          .command = command};
+}
+
+std::vector<Row> single_scattering() {
+  std::vector<Row> rows;
+  const double albedo = 0.6;
+  const light::SharedLaw law = light::law_named("callisto", albedo);
+  for (const double tau : {0.1, 0.5, 2.0}) {
+    const Patch patch = test::random_layer(tau, dilute, thin_layer_spheres, 4, 0.31);
+    for (const double observer : {70.0, 25.0, -40.0})
+      for (const double sun : {50.0, 15.0}) {
+        const Sight sight{{observer * in_rad, 0.7}, {sun * in_rad, 2.3}};
+        const double mu = std::fabs(std::sin(sight.observer.elevation)), mu0 = std::sin(sight.sun.elevation);
+        const double of_sphere =
+            law->brightness(Vec3::UnitZ(), sight.observer.direction(), sight.sun.direction()); // ϖ P/4
+        const double expected =
+            of_sphere * (sight.lit() ? mu0 / (mu + mu0) * (1.0 - std::exp(-tau * (1.0 / mu + 1.0 / mu0)))
+                                     : mu0 / (mu0 - mu) * (std::exp(-tau / mu0) - std::exp(-tau / mu)));
+        rows.push_back(ratio_row(
+            fmt::format("single scattering over the exact one, tau {}, B {}, B' {}", tau, observer, sun),
+            seen({&patch, 1}, sight, law, 131072).single, expected, sight.lit() ? 0.008 : 0.008 + 0.005 * tau / mu0,
+            "a thin layer: varpi P/4 mu0/(mu + mu0) (1 - exp(-tau (1/mu + 1/mu0))), and its like for the other face "
+            "(Chandrasekhar 1950, 21)",
+            fmt::format("{} spheres at random, filling factor {}, seed 4", thin_layer_spheres, dilute)));
+      }
+  }
+  return rows;
+}
+
+std::vector<Row> x_and_y() {
+  std::vector<Row> rows;
+  for (const double tau : {0.1, 1.0, 4.0}) {
+    const Patch patch = test::random_layer(tau, dilute, thin_layer_spheres, 4, 0.31);
+    for (const double albedo : {0.5, 0.9, 1.0}) {
+      const double b = 60.0, sun = 20.0;
+      const test::IsotropicLayer exact(albedo, tau, {std::sin(b * in_rad), std::sin(sun * in_rad)});
+      for (const double face : {1.0, -1.0}) {
+        const Sight sight{{face * b * in_rad, 0.0}, {sun * in_rad, 2.0}};
+        rows.push_back(
+            ratio_row(fmt::format("isotropic I/F over that by X and Y, albedo {}, tau {}, B {}, B' {}", albedo, tau,
+                                  face * b, sun),
+                      seen({&patch, 1}, sight, light::isotropic_law(albedo), 32768).reflectance,
+                      face > 0.0 ? exact.reflected(0, 1) : exact.transmitted(0, 1), face > 0.0 ? 0.008 : 0.02,
+                      "X and Y functions (Chandrasekhar 1950, ch. VIII)",
+                      fmt::format("{} spheres at random, filling factor {}, seed 4", thin_layer_spheres, dilute)));
+      }
+    }
+  }
+  return rows;
+}
+
+// Spheres that do not overlap: their places are not independent, so they hide less of each other.
+std::vector<Row> filling_factors() {
+  std::vector<Row> rows;
+  for (const double height : {75.0, 30.0, 15.0}) {
+    const Patch patch = test::dense_layer(90.0, 90.0, height, height > 50.0 ? 13000 : 7000, 3, 20.0);
+    double area = 0.0, volume = 0.0;
+    for (const double r : patch.radii)
+      area += pi * r * r, volume += 4.0 / 3.0 * pi * r * r * r;
+    const double tau = area / patch.box.area(), filling = volume / (patch.box.area() * height);
+    const Sight sight{{90.0 * in_rad, 0.0}, {90.0 * in_rad, 0.0}};
+    const light::SharedLaw law = light::law_named("callisto", 0.5);
+    const Photometry found = seen({&patch, 1}, sight, law, 262144);
+    const double measured = -std::log(found.transmission.value) / tau;
+    const std::string command = fmt::format(
+        "{} spheres of 0.4 to 1 m at random in 90 x 90 x {} m, none overlapping, seed 3", patch.size(), height);
+    rows.push_back(
+        {.what = fmt::format("optical depth by transmission over sum of areas, filling factor {:.3f}", filling),
+         .measured = measured,
+         .error = found.transmission.error / found.transmission.value / tau,
+         .expected = 1.0 / (1.0 - filling),
+         .tolerance = 0.04,
+         .tolerance_is = "4 %: faces of the layer, one state",
+         .source = "1/(1 - D): free paths among hard spheres (Torquato & Lu 1993, Phys. Rev. E 47, 2950); "
+                   "the effect of Salo & Karjalainen 2003",
+         .command = command});
+    const double of_sphere = law->brightness(Vec3::UnitZ(), Vec3::UnitZ(), Vec3::UnitZ());
+    rows.push_back({.what = fmt::format("single scattering at phase 0, filling factor {:.3f}", filling),
+                    .measured = found.single.value,
+                    .error = found.single.error,
+                    .expected = of_sphere * (1.0 - found.transmission.value),
+                    .tolerance = 1e-6,
+                    .tolerance_is = "rounding: of the same rays",
+                    .source = "varpi P(0)/4 (1 - T): what is seen is lit",
+                    .command = command});
+  }
+  return rows;
+}
+
+std::vector<Row> conservation() {
+  std::vector<Row> rows;
+  const Patch patch = test::dense_layer(20.0, 20.0, 4.0, 160, 2, 3.0);
+  const char* const state = "160 spheres of 0.4 to 1 m in 20 x 20 x 4 m, seed 2";
+  const double nodes[] = {0.0694318442, 0.3300094782, 0.6699905218, 0.9305681558};
+  const double parts[] = {0.1739274226, 0.3260725774, 0.3260725774, 0.1739274226};
+  for (const char* const name : {"lambert", "lommel_seeliger", "isotropic", "callisto"}) {
+    const light::SharedLaw law = light::law_named(name, 1.0);
+    double sky = 0.0, squares = 0.0;
+    for (int k = 0; k < 4; ++k)
+      for (int j = 0; j < 12; ++j)
+        for (const double face : {1.0, -1.0}) {
+          const Sight sight{{50.0 * in_rad, 0.4}, {face * std::asin(nodes[k]), two_pi * (j + 0.37) / 12}};
+          const Photometry one = seen({&patch, 1}, sight, law, 16384);
+          sky += 2.0 * one.reflectance.value * parts[k] / 12.0;
+          squares += std::pow(2.0 * one.reflectance.error * parts[k] / 12.0, 2);
+          if (k == 0 && j == 0 && face > 0.0)
+            sky += one.transmission.value;
+        }
+    rows.push_back({.what = fmt::format("brightness of an even sky through a patch of albedo 1, {}", name),
+                    .measured = sky,
+                    .error = std::sqrt(squares),
+                    .expected = 1.0,
+                    .tolerance = 0.01,
+                    .tolerance_is = "the rule of 4 x 12 directions a face",
+                    .source = "what goes in comes out",
+                    .command = state});
+  }
+  for (const char* const name : {"lambert", "lommel_seeliger", "callisto"}) {
+    const light::SharedLaw law = light::law_named(name, 0.9);
+    const light::Bearing a{50.0 * in_rad, 0.4}, b{12.0 * in_rad, 2.1};
+    const Photometry there = seen({&patch, 1}, {a, b}, law, 1u << 20), back = seen({&patch, 1}, {b, a}, law, 1u << 20);
+    const double one = there.reflectance.value * std::sin(a.elevation),
+                 two = back.reflectance.value * std::sin(b.elevation);
+    rows.push_back({.what = fmt::format("mu I/F there over back, {}", name),
+                    .measured = one / two,
+                    .error = std::hypot(there.reflectance.error / there.reflectance.value,
+                                        back.reflectance.error / back.reflectance.value),
+                    .expected = 1.0,
+                    .tolerance = law->of_particle() ? 0.03 : 0.008,
+                    .tolerance_is = law->of_particle()
+                                        ? "light leaves a particle where it met it, which is not reciprocal"
+                                        : "4 standard errors",
+                    .source = "reciprocity",
+                    .command = state});
+  }
+  return rows;
+}
+
+std::vector<Row> exact_light() {
+  std::vector<Row> rows;
+  if (!light::can_trace())
+    return rows;
+  for (const auto& part : {single_scattering(), x_and_y(), filling_factors(), conservation()})
+    rows.insert(rows.end(), part.begin(), part.end());
+  return rows;
+}
+
+// The asymmetry over azimuth at several elevations.
+struct Asymmetries {
+  std::vector<double> heights, amplitudes, minima, means;
+};
+
+Asymmetries asymmetries_of(std::span<const Patch> patches, const std::vector<double>& degrees) {
+  Asymmetries found;
+  light::PhotometrySettings settings;
+  settings.law = light::law_named("callisto", 0.5);
+  settings.rays = 16384;
+  std::vector<double> azimuths;
+  for (int k = 0; k < 12; ++k)
+    azimuths.push_back(15.0 * k * in_rad);
+  const double phase[] = {6.0 * in_rad};
+  for (const double elevation : degrees) {
+    const double b[] = {elevation * in_rad};
+    const std::vector<Photometry> all = light::photometry(patches, light::sight_grid(b, {}, phase, azimuths), settings);
+    const auto asymmetry = light::brightness_asymmetry(all);
+    double mean = 0.0;
+    for (const Photometry& one : all)
+      mean += one.reflectance.value / static_cast<double>(all.size());
+    found.heights.push_back(elevation);
+    found.amplitudes.push_back(asymmetry->amplitude);
+    found.minima.push_back(asymmetry->minimum_longitude / in_rad + 180.0);
+    found.means.push_back(mean);
+  }
+  return found;
+}
+
+void add_asymmetry_rows(std::vector<Row>& rows, const std::string& what, const Ran& ran) {
+  const auto last = std::span(ran.snapshots).last(std::min<std::size_t>(ran.snapshots.size(), 10));
+  const Asymmetries found = asymmetries_of(last, {4.5, 7.0, 10.0, 12.5, 15.0, 20.0, 26.0});
+  const auto top = static_cast<std::size_t>(std::max_element(found.amplitudes.begin(), found.amplitudes.end()) -
+                                            found.amplitudes.begin());
+  const std::string command = ran.command + "; keeler photometry DIR --elevation 4.5,7,10,12.5,15,20,26";
+  rows.push_back({.what = "elevation of the strongest asymmetry, degrees, " + what,
+                  .measured = found.heights[top],
+                  .expected = 12.5,
+                  .tolerance = 2.6,
+                  .tolerance_is = "10 to 15 degrees",
+                  .source = "Saturn's A ring (Salo et al. 2004; French et al. 2007)",
+                  .command = command});
+  rows.push_back({.what = "longitude of the minimum at B = 10 degrees, " + what,
+                  .measured = found.minima[2],
+                  .expected = 247.5,
+                  .tolerance = 4.5,
+                  .tolerance_is = "245 to 250 degrees, and 2 for a small box",
+                  .source = "Saturn's A ring (Salo et al. 2004; French et al. 2007)",
+                  .command = "of the same run"});
+  rows.push_back({.what = "largest asymmetry, (max - min)/(max + min), " + what,
+                  .measured = found.amplitudes[top],
+                  .expected = 0.15,
+                  .tolerance = 0.10,
+                  .tolerance_is = "25 % is read as either the half or the whole range over the mean",
+                  .source = "Saturn's A ring, up to 25 % near 128,000 km (French et al. 2007)",
+                  .command = "of the same run"});
+  rows.push_back({.what = "mean I/F at B = 26 over 4.5 degrees, " + what,
+                  .measured = found.means.back() / found.means.front(),
+                  .expected = 0.65,
+                  .tolerance = 0.30,
+                  .tolerance_is = "that it falls: gaps open to the eye",
+                  .source = "the negative tilt effect of the A ring (Salo et al. 2004)",
+                  .command = "of the same run"});
+}
+
+std::vector<Row> light_of_wakes() {
+  std::vector<Row> rows;
+  if (!light::can_trace())
+    return rows;
+  const std::vector<std::string> keys = {"particles.density=450", "box.size_in_wavelengths=[8,8]", "time.end=4"};
+  add_asymmetry_rows(rows, "equal spheres", run_example("a-ring-wakes", keys));
+  add_asymmetry_rows(rows, "radii 0.3 to 3 m", run_example("clumped-power-law", {"time.end=3"}));
+  return rows;
+}
+
+std::vector<Row> light_of_dense_layer() {
+  if (!light::can_trace())
+    return {};
+  const Ran ran = run_example("dense-b-ring", {"time.end=1"});
+  const Asymmetries found = asymmetries_of(std::span(ran.snapshots).last(1), {4.5, 10.0, 26.0});
+  return {{.what = "mean I/F at B = 26 over 4.5 degrees, optical depth 3",
+           .measured = found.means.back() / found.means.front(),
+           .expected = 1.2,
+           .tolerance = 0.19,
+           .tolerance_is = "that it rises, by less than 40 %",
+           .source = "the tilt effect of the B ring by shadowing (Salo & French 2010, Icarus 210, 785)",
+           .command = ran.command + "; keeler photometry DIR --elevation 4.5,26"}};
+}
+
+} // namespace
+
+std::vector<Subject> light_subjects() {
+  return {{"light", "Light", false, exact_light},
+          {"light-wakes", "Light", false, light_of_wakes},
+          {"light-dense", "Light", false, light_of_dense_layer}};
+}
+
+} // namespace keeler::validation
