@@ -32,9 +32,9 @@ public:
   /// True if there is any sphere on such a ray.
   bool blocked(const Vec3& origin, const Vec3& direction) const;
 
-  /// Returns the beginning of a ray that leaves a sphere at a hit: beyond the sphere if it goes through it, and off its
-  /// surface by the rounding of single precision.
-  Vec3 leaving(const Hit& hit, const Vec3& direction) const;
+  /// Returns the beginning of a ray that leaves a sphere at a hit, outward: off its surface by the rounding of single
+  /// precision.
+  Vec3 leaving(const Hit& hit) const { return hit.point + cell_->margin() * hit.normal; }
 
 private:
   struct Scene; // of Embree

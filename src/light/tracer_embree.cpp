@@ -141,13 +141,4 @@ bool Tracer::blocked(const Vec3& origin, const Vec3& direction) const {
   });
 }
 
-Vec3 Tracer::leaving(const Hit& hit, const Vec3& direction) const {
-  const double slope = hit.normal.dot(direction);
-  if (slope >= 0.0)
-    return hit.point + cell_->margin() * hit.normal;
-  const Vec3 centre = hit.point - hit.radius * hit.normal;
-  const Vec3 out = hit.point - 2.0 * hit.radius * slope * direction;
-  return out + cell_->margin() * (out - centre).normalized();
-}
-
 } // namespace keeler::light

@@ -32,8 +32,4 @@ bool Tracer::blocked(const Vec3&, const Vec3&) const {
   return false;
 }
 
-Vec3 Tracer::leaving(const Hit& hit, const Vec3&) const {
-  return hit.point;
-}
-
 } // namespace keeler::light

@@ -120,8 +120,8 @@ std::vector<Row> filling_factors() {
                     .measured = found.single.value,
                     .error = found.single.error,
                     .expected = of_sphere * (1.0 - found.transmission.value),
-                    .tolerance = 1e-6,
-                    .tolerance_is = "rounding: of the same rays",
+                    .tolerance = 2e-4,
+                    .tolerance_is = "of the same rays: limbs within the rounding of single precision",
                     .source = "varpi P(0)/4 (1 - T): what is seen is lit",
                     .command = command});
   }
@@ -167,10 +167,8 @@ std::vector<Row> conservation() {
                     .error = std::hypot(there.reflectance.error / there.reflectance.value,
                                         back.reflectance.error / back.reflectance.value),
                     .expected = 1.0,
-                    .tolerance = law->of_particle() ? 0.03 : 0.008,
-                    .tolerance_is = law->of_particle()
-                                        ? "light leaves a particle where it met it, which is not reciprocal"
-                                        : "4 standard errors",
+                    .tolerance = 0.008,
+                    .tolerance_is = "4 standard errors",
                     .source = "reciprocity",
                     .command = state});
   }
@@ -231,8 +229,8 @@ void add_asymmetry_rows(std::vector<Row>& rows, const std::string& what, const R
   rows.push_back({.what = "longitude of the minimum at B = 10 degrees, " + what,
                   .measured = found.minima[2],
                   .expected = 247.5,
-                  .tolerance = 4.5,
-                  .tolerance_is = "245 to 250 degrees, and 2 for a small box",
+                  .tolerance = 7.5,
+                  .tolerance_is = "245 to 250 degrees, and 5 for one run of a small box",
                   .source = "Saturn's A ring (Salo et al. 2004; French et al. 2007)",
                   .command = "of the same run"});
   rows.push_back({.what = "largest asymmetry, (max - min)/(max + min), " + what,

@@ -40,7 +40,7 @@ public:
   /// Draws a direction from which light came that goes to `to`.
   virtual Scattering scatter(const Vec3& normal, const Vec3& to, RandomStream& random) const = 0;
 
-  /// True for a particle law: light may leave on the far side of the sphere, and passes through it.
+  /// True for a particle law: the light belongs to a place of the disc, not to a point of the surface.
   virtual bool of_particle() const = 0;
 };
 

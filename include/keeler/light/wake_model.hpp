@@ -33,7 +33,8 @@ struct StarTransmission {
   double error = 0.0;        ///< standard error of T, above 0
 };
 
-/// A model, with standard errors from the fit's covariance, times √(χ²/freedom) where that is above 1: real wakes are no bars.
+/// A model, with standard errors from the fit's covariance, times √(χ²/freedom) where that is above 1: real wakes are
+/// no bars.
 struct FittedWakes {
   WakeModel model;         ///< of least squares
   WakeModel errors;        ///< standard errors of its numbers

@@ -137,9 +137,9 @@ TEST_CASE("what goes into a dense layer without absorption comes out") {
   }
 }
 
-TEST_CASE("a dense layer of surfaces is reciprocal") {
+TEST_CASE("a dense layer is reciprocal") {
   const Patch patch = test::dense_layer(20.0, 20.0, 4.0, 160, 2, 3.0);
-  for (const char* const name : {"lambert", "lommel_seeliger"}) {
+  for (const char* const name : {"lambert", "lommel_seeliger", "callisto"}) {
     const SharedLaw law = law_named(name, 0.9);
     const Bearing a{50.0 * degree, 0.4}, b{12.0 * degree, 2.1}, c{-30.0 * degree, 1.0};
     for (const Bearing& other : {b, c}) {

@@ -132,19 +132,21 @@ TEST_CASE("single precision errs only for rays that graze a sphere, within a bou
   CHECK(worst > 0.05 * bound);
 }
 
-TEST_CASE("a ray that leaves a sphere does not meet it again, and passes through it where the law is of particles") {
+TEST_CASE("a ray that leaves a sphere does not meet it again") {
   const Patch patch = test::dense_layer(300.0, 40.0, 6.0, 1, 3, 7.0);
   const Tracer tracer(patch);
   RandomStream random(7, RandomPurpose::sample, 0);
   const Vec3 centre = tracer.cell().spheres().front().centre;
   const double radius = patch.radii[0];
-  for (int k = 0; k < 20000; ++k) {
+  int tested = 0;
+  while (tested < 20000) {
     const Vec3 normal = random_direction(random), d = random_direction(random);
-    if (std::fabs(d.z()) < 0.2)
+    if (std::fabs(d.z()) < 0.2 || d.dot(normal) < 0.0)
       continue;
-    const Hit hit{centre + radius * normal, normal, radius, 0};
-    CHECK(!tracer.blocked(tracer.leaving(hit, d), d));
-    CHECK((tracer.leaving(hit, d) - centre).norm() == doctest::Approx(radius).epsilon(1e-3));
+    ++tested;
+    const Vec3 start = tracer.leaving({centre + radius * normal, normal, radius, 0});
+    CHECK(!tracer.blocked(start, d));
+    CHECK((start - centre).norm() == doctest::Approx(radius).epsilon(1e-3));
   }
 }
 
