@@ -2,6 +2,8 @@
 
 #include <keeler/core/units.hpp>
 
+#include <cmath>
+
 namespace keeler::light {
 namespace {
 
@@ -14,9 +16,9 @@ std::vector<quantities::QuantityRow<FootprintStatistics>> star_rows() {
   using Of = const FootprintStatistics&;
   return {
       {{"elevation", unit::degrees, "B", "elevation of the star above the ring plane"},
-       [](Of s) -> Value { return s.star.elevation * degrees_per_rad; }},
+       [](Of s) -> Value { return std::round(s.star.elevation * degrees_per_rad * 1e10) / 1e10; }},
       {{"azimuth", unit::degrees, "phi", "azimuth of the star, from the radius outward to the orbital motion"},
-       [](Of s) -> Value { return s.star.azimuth * degrees_per_rad; }},
+       [](Of s) -> Value { return std::round(s.star.azimuth * degrees_per_rad * 1e10) / 1e10; }},
       {{"transmission", unit::none, "T", "mean fraction of the star's light that passes", Spread::error},
        [](Of s) -> Value { return value_of(std::optional(s.transmission)); }},
       {{"normal_optical_depth", unit::none, "tau", "-sin B ln T"},

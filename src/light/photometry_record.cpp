@@ -11,25 +11,28 @@ namespace unit = quantities::unit;
 using quantities::Spread, quantities::Value, quantities::value_of;
 using Of = const Photometry&;
 
-constexpr double in_degrees = 180.0 / pi;
+// Returns an angle in degrees, without the rounding of its way through radians.
+double degrees_of(double radians) {
+  return std::round(radians * 180.0 / pi * 1e10) / 1e10;
+}
 
 std::vector<quantities::QuantityRow<Photometry>> rows() {
   return {
       {{"observer_elevation", unit::degrees, "B",
         "elevation of the observer above the ring plane; below 0: the other face"},
-       [](Of p) -> Value { return p.sight.observer.elevation * in_degrees; }},
+       [](Of p) -> Value { return degrees_of(p.sight.observer.elevation); }},
       {{"observer_azimuth", unit::degrees, "phi",
         "azimuth of the observer, from the radius outward to the orbital motion"},
-       [](Of p) -> Value { return p.sight.observer.azimuth * in_degrees; }},
+       [](Of p) -> Value { return degrees_of(p.sight.observer.azimuth); }},
       {{"ring_longitude", unit::degrees, "longitude",
         "of the patch, from the point below the observer in the direction of motion: -phi"},
-       [](Of p) -> Value { return p.sight.longitude() * in_degrees; }},
+       [](Of p) -> Value { return degrees_of(p.sight.longitude()); }},
       {{"sun_elevation", unit::degrees, "B'", "elevation of the Sun above the ring plane"},
-       [](Of p) -> Value { return p.sight.sun.elevation * in_degrees; }},
+       [](Of p) -> Value { return degrees_of(p.sight.sun.elevation); }},
       {{"sun_azimuth", unit::degrees, "", "azimuth of the Sun"},
-       [](Of p) -> Value { return p.sight.sun.azimuth * in_degrees; }},
+       [](Of p) -> Value { return degrees_of(p.sight.sun.azimuth); }},
       {{"phase", unit::degrees, "phase", "the angle between the directions to Sun and observer"},
-       [](Of p) -> Value { return p.sight.phase() * in_degrees; }},
+       [](Of p) -> Value { return degrees_of(p.sight.phase()); }},
       {{"reflectance", unit::none, "I/F",
         "intensity I of the patch where the flux of sunlight is pi F, all orders of scattering", Spread::error},
        [](Of p) -> Value { return value_of(std::optional(p.reflectance)); }},
@@ -51,11 +54,11 @@ std::vector<quantities::QuantityRow<AzimuthGroup>> group_rows() {
   using Group = const AzimuthGroup&;
   return {
       {{"observer_elevation", unit::degrees, "B", ""},
-       [](Group g) -> Value { return g.sights.front().sight.observer.elevation * in_degrees; }},
+       [](Group g) -> Value { return degrees_of(g.sights.front().sight.observer.elevation); }},
       {{"sun_elevation", unit::degrees, "B'", ""},
-       [](Group g) -> Value { return g.sights.front().sight.sun.elevation * in_degrees; }},
+       [](Group g) -> Value { return degrees_of(g.sights.front().sight.sun.elevation); }},
       {{"phase", unit::degrees, "phase", ""},
-       [](Group g) -> Value { return g.sights.front().sight.phase() * in_degrees; }},
+       [](Group g) -> Value { return degrees_of(g.sights.front().sight.phase()); }},
       {{"mean_reflectance", unit::none, "mean I/F", "mean of the I/F over the azimuths"},
        [](Group g) -> Value {
          double sum = 0.0;
@@ -71,7 +74,7 @@ std::vector<quantities::QuantityRow<AzimuthGroup>> group_rows() {
       {{"minimum_longitude", unit::degrees, "darkest at longitude",
         "ring longitude of the least I/F, below 180; the other one is 180 farther"},
        [](Group g) -> Value {
-         return g.asymmetry ? Value(g.asymmetry->minimum_longitude * in_degrees)
+         return g.asymmetry ? Value(degrees_of(g.asymmetry->minimum_longitude))
                             : Value(quantities::Unknown{"it takes 8 azimuths in half a turn"});
        }},
   };
