@@ -60,6 +60,9 @@ debian_package(library libkeeler-dev libdevel "patches of planetary rings in C++
   "one's own.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS
   "cmake, libeigen3-dev, libfftw3-dev, libfmt-dev, libhdf5-dev, libtomlplusplus-dev, libxxhash-dev, nlohmann-json3-dev, pkg-config")
+if(KEELER_EMBREE)
+  string(APPEND CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS ", libembree-dev")
+endif()
 
 if(KEELER_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)

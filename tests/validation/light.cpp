@@ -59,7 +59,7 @@ std::vector<Row> single_scattering() {
                                      : mu0 / (mu0 - mu) * (std::exp(-tau / mu0) - std::exp(-tau / mu)));
         rows.push_back(ratio_row(
             fmt::format("single scattering over the exact one, tau {}, B {}, B' {}", tau, observer, sun),
-            seen({&patch, 1}, sight, law, 131072).single, expected, sight.lit() ? 0.008 : 0.008 + 0.005 * tau / mu0,
+            seen({&patch, 1}, sight, law, 65536).single, expected, sight.lit() ? 0.008 : 0.008 + 0.005 * tau / mu0,
             "a thin layer: varpi P/4 mu0/(mu + mu0) (1 - exp(-tau (1/mu + 1/mu0))), and its like for the other face "
             "(Chandrasekhar 1950, 21)",
             fmt::format("{} spheres at random, filling factor {}, seed 4", thin_layer_spheres, dilute)));
@@ -93,8 +93,10 @@ std::vector<Row> x_and_y() {
 // Spheres that do not overlap: their places are not independent, so they hide less of each other.
 std::vector<Row> filling_factors() {
   std::vector<Row> rows;
-  for (const double height : {75.0, 30.0, 15.0}) {
-    const Patch patch = test::dense_layer(90.0, 90.0, height, height > 50.0 ? 13000 : 7000, 3, 20.0);
+  const std::pair<double, std::size_t> layers[] = {{30.0, 3100}, {15.0, 3100}, {15.0, 6200}}; // heights, spheres
+  for (const auto& layer : layers) {
+    const double height = layer.first;
+    const Patch patch = test::dense_layer(60.0, 60.0, height, layer.second, 3, 20.0);
     double area = 0.0, volume = 0.0;
     for (const double r : patch.radii)
       area += pi * r * r, volume += 4.0 / 3.0 * pi * r * r * r;
@@ -104,7 +106,7 @@ std::vector<Row> filling_factors() {
     const Photometry found = seen({&patch, 1}, sight, law, 262144);
     const double measured = -std::log(found.transmission.value) / tau;
     const std::string command = fmt::format(
-        "{} spheres of 0.4 to 1 m at random in 90 x 90 x {} m, none overlapping, seed 3", patch.size(), height);
+        "{} spheres of 0.4 to 1 m at random in 60 x 60 x {} m, none overlapping, seed 3", patch.size(), height);
     rows.push_back(
         {.what = fmt::format("optical depth by transmission over sum of areas, filling factor {:.3f}", filling),
          .measured = measured,
@@ -277,8 +279,8 @@ std::vector<Row> light_of_dense_layer() {
 
 std::vector<Subject> light_subjects() {
   return {{"light", "Light", false, exact_light},
-          {"light-wakes", "Light", false, light_of_wakes},
-          {"light-dense", "Light", false, light_of_dense_layer}};
+          {"light-wakes", "Light of wakes", false, light_of_wakes},
+          {"light-dense", "Light of a dense layer", false, light_of_dense_layer}};
 }
 
 } // namespace keeler::validation
