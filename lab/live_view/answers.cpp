@@ -162,8 +162,12 @@ Reply LiveView::Shared::plots() {
       series_.sample(*readable_, *readable_scene_);
     note_attention();
   } else if (!has_state() || past_is_safe_) {
+    std::optional<runs::RingScale> scale = scale_;
+    const bool from_snapshots = !scale && !has_state();
     lock.unlock();
-    series_.refresh(past_);
+    if (from_snapshots)
+      scale = past_.scale();
+    series_.refresh(scale);
   }
   return {.type = "application/json", .head = {}, .body = series_.text(), .content_policy = {}};
 }

@@ -82,7 +82,7 @@
     const now = performance.now();
     arrivals = arrivals.filter((at) => now - at < 2000).concat([now]);
     const span = now - arrivals[0];
-    element("rate").textContent = arrivals.length > 2 ? `${(1000 * (arrivals.length - 1) / span).toFixed(0)} frames/s` : "";
+    element("rate").textContent = arrivals.length > 2 && !state.paused ? `${(1000 * (arrivals.length - 1) / span).toFixed(0)} frames/s` : "";
   }
 
   function showFrame(about, buffer, offset, live) {

@@ -73,6 +73,14 @@ void LiveView::Shared::note_attention() {
 // Makes the frames that pages wait for. Precondition: the caller holds the guard, and the state may be read.
 void LiveView::Shared::make_frames(const Simulation& simulation, const Scene& scene) {
   rough_ = simulation.state().particles.rough;
+  if (!scale_) {
+    scale_ = runs::RingScale{.mass = 0.0,
+                             .orbital_frequency = scene.planet.orbital_frequency,
+                             .shear = simulation.state().box.shear,
+                             .driven = !scene.external_forces.empty()};
+    for (const Body& body : simulation.state().particles.bodies)
+      scale_->mass += body.mass;
+  }
   const std::uint64_t version = version_;
   for (Slot& slot : slots_)
     if (slot.wanted && slot.version != version) {

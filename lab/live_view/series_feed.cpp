@@ -33,7 +33,7 @@ void SeriesFeed::sample(const Simulation& simulation, const Scene& scene) {
   });
 }
 
-void SeriesFeed::refresh(Past& past) {
+void SeriesFeed::refresh(const std::optional<runs::RingScale>& scale) {
   if (is_sampled() || !throttle_.due())
     return;
   throttle_.spend([&] {
@@ -41,7 +41,7 @@ void SeriesFeed::refresh(Past& past) {
     try {
       if (std::filesystem::exists(file))
         table_ = io::read_series(file);
-      scale_ = past.scale();
+      scale_ = scale;
     } catch (const Error&) { // as while a new run begins in the folder
       table_ = {};
     }

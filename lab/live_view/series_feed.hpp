@@ -2,7 +2,6 @@
 // sampled from a simulation in memory while a page asks.
 #pragma once
 
-#include "past.hpp"
 #include "throttle.hpp"
 
 #include <keeler/io/series.hpp>
@@ -26,8 +25,8 @@ public:
   /// Adds a row, unless there is one of this step. Precondition: is_sampled().
   void sample(const Simulation& simulation, const Scene& scene);
 
-  /// Reads the folder if it is time. `past` has the scale of the series.
-  void refresh(Past& past);
+  /// Reads the folder if it is time. There are no plots without the scale of the series.
+  void refresh(const std::optional<runs::RingScale>& scale);
   /// Returns the JSON of the plots, which is updated at times.
   std::shared_ptr<const std::string> text();
 

@@ -89,7 +89,8 @@ private:
   Throttle frames_{frame_interval, fraction_of_frames};
   double charged_ = 0.0; // of server_seconds_
   std::uint64_t last_number_ = 0;
-  bool rough_ = false; // the particles have spins
+  std::optional<runs::RingScale> scale_; // of the series of a run in this process
+  bool rough_ = false;                   // the particles have spins
   bool paused_ = false;
   std::int64_t granted_ = 0; // steps that may be done while paused
   double limit_ = 0.0;       // steps per second; 0: none
