@@ -3,6 +3,7 @@
 #include <keeler/simulation/simulation.hpp>
 
 #include <keeler/core/units.hpp>
+#include <keeler/particles/by_id.hpp>
 
 #include <cassert>
 #include <cmath>

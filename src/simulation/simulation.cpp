@@ -14,7 +14,6 @@
 #include <keeler/decomposition/slabs.hpp>
 #include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/forces/self_gravity.hpp>
-#include <keeler/particles/by_id.hpp>
 
 #include <fmt/format.h>
 
