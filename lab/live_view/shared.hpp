@@ -86,7 +86,7 @@ private:
   std::vector<Slot> slots_;
   // Frames and the server take at most this part of the run's processor time.
   static constexpr double frame_interval = 0.045, fraction_of_frames = 0.015;
-  Throttle frames_{frame_interval, fraction_of_frames};
+  Throttle frames_{frame_interval, fraction_of_frames, Throttle::Of::thread_time};
   double charged_ = 0.0; // of server_seconds_
   std::uint64_t last_number_ = 0;
   std::optional<runs::RingScale> scale_; // of the series of a run in this process

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <chrono>
 #include <ctime>
+#include <thread>
 
 namespace keeler::live_view {
 
@@ -19,12 +20,20 @@ class Throttle {
 public:
   using Clock = std::chrono::steady_clock;
 
-  /// Begins are at least `interval` (s) apart, and the work takes at most this fraction of the time.
-  Throttle(double interval, double fraction) : interval_(interval), fraction_(fraction) {
+  enum class Of { wall_time, thread_time };
+
+  /// Begins are at least `interval` (s) apart, and the work takes at most this fraction of the time that passes, or of
+  /// the processor time of the thread that calls: on a busy machine it has less of that.
+  Throttle(double interval, double fraction, Of of = Of::wall_time)
+      : interval_(interval), fraction_(fraction), of_(of) {
     assert(interval >= 0.0 && fraction > 0.0);
   }
 
-  bool due() const { return Clock::now() >= next_; }
+  bool due() const {
+    const bool is_rested =
+        of_ == Of::wall_time || std::this_thread::get_id() != thread_ || thread_seconds() >= next_thread_seconds_;
+    return is_rested && Clock::now() >= next_;
+  }
 
   /// Does the work, which is then due again after a while. `more` is processor time (s) that was spent for it
   /// elsewhere, and `processors` how many there are to take a fraction of.
@@ -34,13 +43,18 @@ public:
     const double before = thread_seconds();
     work();
     const double spent = (thread_seconds() - before + more) / processors;
+    thread_ = std::this_thread::get_id();
+    next_thread_seconds_ = before + spent / fraction_;
     next_ = begin + std::chrono::duration_cast<Clock::duration>(
                         std::chrono::duration<double>(std::max(interval_, spent / fraction_)));
   }
 
 private:
   double interval_, fraction_;
+  Of of_;
   Clock::time_point next_ = Clock::time_point::min();
+  std::thread::id thread_; // that did the work last
+  double next_thread_seconds_ = 0.0;
 };
 
 } // namespace keeler::live_view
