@@ -21,13 +21,14 @@ void compute(double seconds) {
 } // namespace
 
 TEST_CASE("work waits for its interval, and for its fraction of the time that passes") {
-  Throttle often(0.0, 0.5), seldom(1e3, 1.0);
+  Throttle often(0.0, 0.5), costly(0.0, 1e-4), seldom(1e3, 1.0);
   CHECK(often.due());
-  often.spend([] { compute(0.03); });
-  CHECK_FALSE(often.due());
+  for (Throttle* throttle : {&often, &costly})
+    throttle->spend([] { compute(0.03); });
+  seldom.spend([] {});
   std::this_thread::sleep_for(std::chrono::milliseconds(70));
   CHECK(often.due());
-  seldom.spend([] {});
+  CHECK_FALSE(costly.due());
   CHECK_FALSE(seldom.due());
 }
 
@@ -46,11 +47,12 @@ TEST_CASE("a fraction of the thread's processor time does not grow while the thr
 }
 
 TEST_CASE("several processors share what is spent elsewhere") {
-  Throttle throttle(0.0, 1.0);
-  throttle.spend([] {}, 0.2, 4);
-  CHECK_FALSE(throttle.due());
+  Throttle one(0.0, 1.0), four(0.0, 1.0);
+  one.spend([] {}, 100.0, 1);
+  four.spend([] {}, 0.2, 4);
   std::this_thread::sleep_for(std::chrono::milliseconds(60));
-  CHECK(throttle.due());
+  CHECK_FALSE(one.due());
+  CHECK(four.due());
 }
 
 } // namespace throttle_test
