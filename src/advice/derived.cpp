@@ -20,7 +20,7 @@ namespace {
 // Peak memory of `keeler run` of examples/a-ring-wakes, settled and fresh, and examples/equilibrium, N = 10⁵ to 9 ×
 // 10⁵.
 namespace cost {
-constexpr double program_bytes = 25e6;  // code, libraries, buffers that do not grow with N
+constexpr double program_bytes = 33e6;  // code, libraries, buffers that do not grow with N
 constexpr double drift_bytes = 515.0;   // lines, cells, lists, event counts, buffers: at most 590 with state
 constexpr double tree_node_bytes = 120; // box, mass, centre, quadrupole, links
 constexpr double nodes_per_particle = 0.5;

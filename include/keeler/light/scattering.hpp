@@ -77,7 +77,9 @@ SharedLaw lommel_seeliger_law(double albedo);
 struct LawEntry {
   const char* name;                                   ///< "power_law"
   const char* parameter;                              ///< what NAME=VALUE sets; empty: nothing
-  double fallback, low, high;                         ///< of the parameter: default and open range
+  double fallback;                                    ///< of the parameter, where none is given
+  double low;                                         ///< its open range: from here
+  double high;                                        ///< to here
   const char* meaning;                                ///< a line for the manual
   SharedLaw (*make)(double parameter, double albedo); ///< makes it
 };
