@@ -25,9 +25,26 @@ double shown_degrees(double radians) {
   return radians * 180.0 / pi;
 }
 
-void sort_by_x(plot::PlotCurve& curve) {
-  std::sort(curve.points.begin(), curve.points.end(),
-            [](const plot::PlotPoint& a, const plot::PlotPoint& b) { return a.x < b.x; });
+// Sorts the points by longitude so that the curve does not cross the widest gap between them: the longitudes 190 to 350
+// and 0 are 190 to 360.
+void sort_by_longitude(plot::PlotCurve& curve) {
+  std::vector<plot::PlotPoint>& points = curve.points;
+  const auto sort = [&] {
+    std::sort(points.begin(), points.end(),
+              [](const plot::PlotPoint& a, const plot::PlotPoint& b) { return a.x < b.x; });
+  };
+  constexpr double turn = 360.0;
+  sort();
+  double widest = points.front().x + turn - points.back().x, first = points.front().x;
+  for (std::size_t k = 1; k < points.size(); ++k)
+    if (points[k].x - points[k - 1].x > widest) {
+      widest = points[k].x - points[k - 1].x;
+      first = points[k].x;
+    }
+  for (plot::PlotPoint& point : points)
+    if (point.x < first)
+      point.x += turn;
+  sort();
 }
 
 plot::Panel against_longitude(const std::vector<light::AzimuthGroup>& groups) {
@@ -42,7 +59,7 @@ plot::Panel against_longitude(const std::vector<light::AzimuthGroup>& groups) {
                           .marks = true};
     for (const light::Photometry& one : groups[k].sights)
       curve.points.push_back({shown_degrees(one.sight.longitude()), one.reflectance.value, one.reflectance.error});
-    sort_by_x(curve);
+    sort_by_longitude(curve);
     panel.curves.push_back(curve);
   }
   return panel;

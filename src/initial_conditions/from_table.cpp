@@ -44,7 +44,7 @@ void require_frame(const io::ParticleTable& table, const Scene& scene) {
   const io::TableFrame& frame = table.frame;
   if (frame.has_box() && (differ(frame.size_x, scene.size_x) || differ(frame.size_y, scene.size_y)))
     throw UsageError(
-        fmt::format("{}: it is of a box of {:g} m x {:g} m, and the scene's is {:g} m x {:g} m; set box.size",
+        fmt::format("{0}: it is of a box of {1} m x {2} m, and the scene's is {3} m x {4} m; set box.size = [{1}, {2}]",
                     table.file, frame.size_x, frame.size_y, scene.size_x, scene.size_y));
   if (frame.orbital_frequency != 0.0 && differ(frame.orbital_frequency, scene.planet.orbital_frequency))
     throw UsageError(

@@ -47,9 +47,11 @@ Sight sight_at_phase(const Bearing& observer, double sun_elevation, double phase
         format_number(observer.elevation / per_degree), format_number(sun_elevation / per_degree),
         format_number(least / per_degree), format_number(most / per_degree), format_number(phase / per_degree)));
   const double across = std::cos(observer.elevation) * std::cos(sun_elevation);
-  const double cosine =
-      across > 0.0 ? (std::cos(phase) - std::sin(observer.elevation) * std::sin(sun_elevation)) / across : 1.0;
-  return {observer, {sun_elevation, observer.azimuth + std::acos(std::clamp(cosine, -1.0, 1.0))}};
+  // by half angles, which keep the digits of a small difference
+  const auto squared = [](double sine) { return sine * sine; };
+  const double half = squared(std::sin(0.5 * phase)) - squared(std::sin(0.5 * (observer.elevation - sun_elevation)));
+  const double between = across > 0.0 ? 2.0 * std::asin(std::sqrt(std::clamp(half / across, 0.0, 1.0))) : 0.0;
+  return {observer, {sun_elevation, observer.azimuth + between}};
 }
 
 std::vector<Sight> sight_grid(std::span<const double> elevations, std::span<const double> sun_elevations,

@@ -4,11 +4,14 @@
 #include "numbers.hpp"
 #include "snapshot.hpp"
 
+#include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/light/photometry.hpp>
 #include <keeler/light/photometry_record.hpp>
 #include <keeler/quantities/views.hpp>
 #include <keeler/runs/measured_part.hpp>
+
+#include <fmt/format.h>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -40,7 +43,17 @@ light::SharedLaw law_of(const py::object& law, double albedo) {
   if (py::isinstance<py::str>(law))
     return light::law_named(law.cast<std::string>(), albedo);
   light::law_named("isotropic", albedo); // checks the albedo
-  return light::particle_law([&law](double phase) { return law(phase).cast<double>(); }, albedo);
+  const auto value = [&law](double phase) {
+    const py::object returned = law(phase);
+    try {
+      return returned.cast<double>();
+    } catch (const py::cast_error&) {
+      throw UsageError(
+          fmt::format("the phase function returns {} at the phase angle {:g} rad; it must be a number from 0 on",
+                      py::repr(returned).cast<std::string>(), phase));
+    }
+  };
+  return light::particle_law(value, albedo);
 }
 
 py::list photometry(const py::object& what, const std::optional<double>& since, const std::optional<double>& until,
