@@ -43,7 +43,7 @@ using Json = nlohmann::ordered_json;
 // Limits that keep a page small: number of pictures, their widths (pixels) and sizes (bytes).
 constexpr std::size_t max_pictures = 4;
 constexpr int picture_width = 1200, lit_picture_width = 900, earlier_picture_width = 600, min_embedded_width = 300;
-constexpr std::size_t picture_bytes = 1'600'000, lit_picture_bytes = 600'000, earlier_picture_bytes = 430'000;
+constexpr std::size_t picture_bytes = 1'250'000, lit_picture_bytes = 450'000, earlier_picture_bytes = 430'000;
 
 // Particles measured, over all snapshots: limits the time that a page of large patches takes.
 constexpr std::size_t max_measured_particles = 3'000'000;
