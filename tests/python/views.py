@@ -82,7 +82,7 @@ class Viewed:
         size = int.from_bytes(body[:4], "little")
         return json.loads(body[4 : 4 + size]), body[4 + size :]
 
-    def wait_for(self, condition, seconds=30):
+    def wait_for(self, condition, seconds=60):
         """Returns the first state that meets the condition."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
