@@ -25,7 +25,7 @@ words_for() {
   sweep) words=("$work/grid.toml" -o "$work/sweep") ;;
   help) words=(run) ;;
   photometry) words=("$work/done" --elevation 20 --azimuth 0 --rays 1000) ;;
-  occultation) words=("$work/done" --elevation 20 --azimuth 0,90 --tracks 2 --samples 4 --rays 4) ;;
+  occultation) words=("$work/done" --elevation 20 --azimuth "0,90" --tracks 2 --samples 4 --rays 4) ;;
   tune) words=("$work/scene.toml" --orbits 0.1) ;;
   *) return 1 ;;
   esac

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures what forces of one's own from Python cost: instructions per particle and step, by valgrind's callgrind.
 
-    PYTHONPATH=build/default/python scripts/python-force-cost [PARTICLES]
+    PYTHONPATH=build/default/python scripts/python_force_cost.py [PARTICLES]
 
 The same drag is [gas], a function of Python and a compiled one; a ring of 1 m spheres at optical depth 0.3, without
 self-gravity and with fft. Each number is the difference of runs of 6 and 2 steps. Needs valgrind and cc.
