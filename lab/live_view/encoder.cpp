@@ -134,7 +134,9 @@ Frame Encoder::encode(const Patch& patch) {
 template<class Load> void Encoder::follow_values(const Load& load) {
   std::vector<double> sample;
   if (whole_range()) {
-    sample = {extent_.low[value_index], extent_.high[value_index]};
+    const bool is_known = extent_.low[value_index] <= extent_.high[value_index];
+    sample = is_known ? std::vector<double>{extent_.low[value_index], extent_.high[value_index]}
+                      : std::vector<double>{1.0, 2.0}; // any: the first pass finds the extent, and is made again
   } else {
     const std::size_t every = (chosen_.size() + range_samples - 1) / range_samples;
     for (std::size_t j = 0; j < chosen_.size(); j += every)
