@@ -22,6 +22,7 @@
 #include <memory>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include <hdf5.h>
 #include <spawn.h>
@@ -74,7 +75,8 @@ void open_browser(const std::string& address, const TemporaryFolder& place, cons
 
 class Viewing {
 public:
-  Viewing(const ViewArguments& arguments, live_view::ViewOptions options) : view_(with_port(options, arguments.port)) {
+  Viewing(const ViewArguments& arguments, live_view::ViewOptions options)
+      : view_(with_port(std::move(options), arguments.port)) {
     print("{}\n", view_.address());
     std::fflush(stdout);
     arguments.talk.notice()("open this address in a browser of this machine; Ctrl-C ends the view");
