@@ -10,6 +10,9 @@
 #include <functional>
 
 namespace keeler::python {
+
+namespace py = pybind11;
+
 namespace {
 
 namespace fs = std::filesystem;
