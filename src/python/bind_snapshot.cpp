@@ -18,7 +18,6 @@
 #include <keeler/io/provenance.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/io/snapshot.hpp>
-#include <keeler/light/photometry_record.hpp>
 #include <keeler/quantities/views.hpp>
 #include <keeler/render/patch_picture.hpp>
 #include <keeler/runs/measured_part.hpp>
@@ -217,12 +216,7 @@ void bind_snapshot(py::module_& module) {
   module.def("read_series", &series, py::arg("file"));
   module.def("generate", &generate, py::arg("scene"), py::arg("clumped"));
   module.def("column_quantities", &column_quantities, py::arg("of_run"));
-  module.def("quantities", [] {
-    std::vector<quantities::Quantity> all = runs::measured_quantities();
-    for (const quantities::Quantity& quantity : light::photometry_quantities())
-      all.push_back(quantity);
-    return described(all);
-  });
+  module.def("quantities", [] { return described(runs::measured_quantities()); });
   module.def("summary_quantities", [] { return described(runs::summary_quantities()); });
   module.def("analyze", &analyze_path, py::arg("path"), py::arg("since"), py::arg("until"));
   module.def("from_arrays", &from_arrays, py::arg("text"), py::arg("name"), py::arg("overrides"), py::arg("positions"),
