@@ -7,6 +7,7 @@ import time
 import unittest
 from pathlib import Path
 
+from pages import lit
 from views import SCENE, Viewed, ask, in_folder
 
 SCREENSHOTS = Path(os.environ["KEELER_SCREENSHOTS"])
@@ -31,19 +32,6 @@ class Browser(unittest.TestCase):
         self.addCleanup(browser.quit)
         return browser
 
-    def lit(self, browser):
-        """How many pixels of the view are not sky, and a number of all."""
-        return browser.execute_script(
-            "const from = document.querySelector('#stage canvas'), to = document.createElement('canvas');"
-            "to.width = from.width; to.height = from.height;"
-            "const pen = to.getContext('2d'); pen.drawImage(from, 0, 0);"
-            "const all = pen.getImageData(0, 0, to.width, to.height).data;"
-            "let lit = 0, sum = 0;"
-            "for (let k = 0; k < all.length; k += 4) {"
-            "  if (all[k] + all[k + 1] + all[k + 2] > 60) ++lit;"
-            "  sum = (31 * sum + all[k] + 7 * all[k + 1] + 13 * all[k + 2]) % 1000003; }"
-            "return [lit / (all.length / 4), sum];")
-
     def wait(self, browser, condition):
         from selenium.webdriver.support.ui import WebDriverWait
 
@@ -66,7 +54,7 @@ class Browser(unittest.TestCase):
             self.wait(browser, lambda: orbits() > 1.2 and browser.find_elements(By.CSS_SELECTOR, ".chart canvas"))
             time.sleep(0.5)
             browser.save_screenshot(str(SCREENSHOTS / "view-running.png"))
-            self.assertGreater(self.lit(browser)[0], 0.01)
+            self.assertGreater(lit(browser)[0], 0.01)
 
             part("pause").click()
             self.wait(browser, lambda: part("stage-name").text == "Paused")
@@ -75,7 +63,7 @@ class Browser(unittest.TestCase):
             self.wait(browser, lambda: round(orbits(), 3) == stands)
             time.sleep(0.3)
             self.assertEqual(round(view.state()["orbits"], 3), stands)
-            seen = {self.lit(browser)[1]}
+            seen = {lit(browser)[1]}
             part("step").click()
             self.wait(browser, lambda: orbits() > stands + 0.001)
             self.assertAlmostEqual(orbits(), stands + 0.002, places=6)
@@ -83,10 +71,10 @@ class Browser(unittest.TestCase):
                 label = part("quantity").text
                 Select(part("field")).select_by_visible_text(field)
                 self.wait(browser, lambda: part("quantity").text != label)
-                self.wait(browser, lambda: self.lit(browser)[1] not in seen)
-                seen.add(self.lit(browser)[1])
+                self.wait(browser, lambda: lit(browser)[1] not in seen)
+                seen.add(lit(browser)[1])
             browser.find_element(By.CSS_SELECTOR, "[data-look=above]").click()
-            self.wait(browser, lambda: self.lit(browser)[1] not in seen)
+            self.wait(browser, lambda: lit(browser)[1] not in seen)
             browser.save_screenshot(str(SCREENSHOTS / "view-above.png"))
             slide("time", 0)  # the past
             self.wait(browser, lambda: part("moment").text == "orbit 0.00 (snap_000000.hdf)")

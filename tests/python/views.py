@@ -9,18 +9,11 @@ import tempfile
 import time
 from pathlib import Path
 
+from pages import RING
+
 KEELER = os.environ["KEELER_PROGRAM"]
 
-SCENE = """
-title = "A ring of </script> & spins"
-planet.preset = "saturn-a-ring"
-box.size = [60.0, 60.0]
-particles = { optical_depth = 0.4, density = 450.0, sizes = { law = "power", min = 0.5, max = 2.0, exponent = 3.0 } }
-collisions = { restitution = { law = "constant", value = 0.5 }, friction = { tangential_restitution = 0.2 } }
-gravity = { solver = "tree", kick_every = 1 }
-time = { step = 2e-3, end = 1.0 }
-output = { snapshot_every = 0.2, series_every = 0.01 }
-"""
+SCENE = RING + "output = { snapshot_every = 0.2, series_every = 0.01 }\n"
 
 
 class Viewed:
