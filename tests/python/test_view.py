@@ -17,9 +17,12 @@ from views import KEELER, SCENE, Viewed, ask, in_folder
 
 
 def watch(view, frames):
-    """Asks for frames of all fields and for the plots until the run has ended."""
+    """Asks for frames of all fields and for the plots until the run has ended. It is slow until six states have been seen."""
     have = {}
+    view.get("limit?steps_per_second=20", "POST")
     while True:
+        if len({frame["orbits"] for frame, _ in frames}) >= 6:
+            view.get("limit?steps_per_second=0", "POST")
         for colour in ("height", "size", "speed", "spin", "cluster", "density"):
             head, data = view.frame(colour, have.get(colour, 0))
             if head["stage"] == "finished":
