@@ -22,7 +22,6 @@ enum class Acceleration {
   levels,        ///< levels of cells
   groups,        ///< groups of lines in the making of lists
   presorting,    ///< sorting of the events known when a step begins
-  prefetching,   ///< of the particles of coming events
   repredictions, ///< re-prediction events of large bodies
   count_
 };
@@ -33,8 +32,8 @@ enum class Acceleration {
 class LeftOut {
 public:
   LeftOut() {
-    constexpr const char* names[] = {"lists", "mending", "windows", "simd",       "rejection",   "newton",
-                                     "lanes", "levels",  "groups",  "presorting", "prefetching", "looks"};
+    constexpr const char* names[] = {"lists", "mending", "windows", "simd",       "rejection", "newton",
+                                     "lanes", "levels",  "groups",  "presorting", "looks"};
     static_assert(std::size(names) == static_cast<std::size_t>(Acceleration::count_));
     const char* const variable = std::getenv("KEELER_WITHOUT");
     std::istringstream all(variable ? variable : "");

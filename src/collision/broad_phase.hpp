@@ -77,10 +77,6 @@ public:
   }
 
   bool has_many(std::uint32_t i) const { return !through_grid_ && lists_.has_many(i); }
-  void prefetch(std::size_t i, int stage) const {
-    if (!through_grid_)
-      lists_.prefetch(i, stage);
-  }
 
   NeighbourLists& lists() { return lists_; }
   const NeighbourLists& lists() const { return lists_; }

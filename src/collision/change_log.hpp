@@ -97,8 +97,6 @@ public:
       log.spins.pop_back();
   }
 
-  void prefetch(std::size_t i) const { __builtin_prefetch(&newest_[i], 1); }
-
   std::size_t bytes() const {
     std::size_t total = newest_.capacity() * sizeof(ChangeNumber) + logs_.capacity() * sizeof(DomainLog);
     for (const DomainLog& log : logs_)

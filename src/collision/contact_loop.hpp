@@ -61,10 +61,6 @@ concept OrbitStore = requires(Store& orbits, std::uint32_t i, double time, const
   { orbits.may_repredict(i) } -> std::same_as<bool>;
   // asks the finder
   { orbits.find_all(queries, results) } -> std::same_as<void>;
-
-  // the finder is about to be asked about i; a contact of i comes soon (stages 0, 1 and 2, some contacts apart)
-  { orbits.prefetch_partner(std::size_t{i}) } -> std::same_as<void>;
-  { orbits.prefetch(std::size_t{i}, 0) } -> std::same_as<void>;
 };
 
 template<OrbitStore Orbits> class ContactLoop {
@@ -75,13 +71,8 @@ public:
   /// Carries out events until none is pending. Throws InvariantError when a search meets numbers that are not finite or
   /// a particle collides more than 100,000 times; and Interrupted.
   void run() {
-    for (int stage = 0; stage < stages; ++stage) // events too early for the loop below to prefetch
-      for (std::size_t soon = 0; soon <= events_ahead(stage); ++soon)
-        prefetch(soon, stage);
     while (!events_.empty()) {
       throw_if_interrupted();
-      for (int stage = 0; stage < stages; ++stage)
-        prefetch(events_ahead(stage), stage);
       const Event event = events_.take_first();
       if (!orbits_.is_due(event))
         continue;
@@ -135,24 +126,6 @@ private:
             query.high,
             orbits_.event_count(query.low),
             orbits_.event_count(query.high)};
-  }
-
-  static constexpr int stages = 3; // of prefetching
-  static constexpr std::size_t events_ahead(int stage) { return 6 * static_cast<std::size_t>(stages - stage); }
-
-  void prefetch(std::size_t ahead, int stage) const {
-    const Event* soon = events_.ahead(ahead);
-    if (!soon || without(Acceleration::prefetching))
-      return;
-    for (const std::uint32_t i : {soon->low, soon->high}) {
-      if (stage == 0) {
-        __builtin_prefetch(&step_.particles.bodies[i]);
-        __builtin_prefetch(&step_.particles.ids[i]);
-        if (!step_.gravity.accelerations.empty())
-          __builtin_prefetch(&step_.gravity.accelerations[i]);
-      }
-      orbits_.prefetch(i, stage);
-    }
   }
 
   // Carries out a contact: the impulse along the line of centres turns the normal approach speed into the rebound's
@@ -269,14 +242,8 @@ private:
     const double until = prediction_end(i, from);
     orbits_.visit_partners(i, from, until, [&](std::size_t j, const Image& image) {
       ++partners;
-      if (j == except)
-        return;
-      partners_.push_back({i, static_cast<std::uint32_t>(j), image});
-      if (without(Acceleration::prefetching))
-        return;
-      __builtin_prefetch(&step_.particles.bodies[j]);
-      __builtin_prefetch(&step_.particles.ids[j]);
-      orbits_.prefetch_partner(j);
+      if (j != except)
+        partners_.push_back({i, static_cast<std::uint32_t>(j), image});
     });
     max_partners_ = std::max(max_partners_, partners);
     if (until < step_.end()) {

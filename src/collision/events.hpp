@@ -29,8 +29,8 @@ struct Event {
 };
 
 /// A sorted list of the events known at the start of the step, and a small heap of later ones: most are known at the
-/// start, and show which particles to prefetch. Invalid events stay until they come up (lazy deletion: Lubachevsky
-/// 1991), so the caller compares event counts.
+/// start. Invalid events stay until they come up (lazy deletion: Lubachevsky 1991), so the caller compares event
+/// counts.
 class EventQueue {
 public:
   bool empty() const { return next_ == order_.size() && later_.empty(); }
@@ -42,11 +42,6 @@ public:
 
   std::size_t bytes() const {
     return (order_.capacity() + later_.capacity()) * sizeof(Turn) + events_.capacity() * sizeof(Event);
-  }
-
-  /// Returns an event that will probably come up after so many others, or nullptr.
-  const Event* ahead(std::size_t by) const {
-    return next_ + by < order_.size() ? &events_[order_[next_ + by].number] : nullptr;
   }
 
 private:

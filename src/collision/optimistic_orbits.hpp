@@ -98,15 +98,6 @@ public:
   void find_all(std::span<const finders::Query> queries, std::span<finders::FinderResult> results) const {
     step_.finder.find_all(queries, results);
   }
-  void prefetch_partner(std::size_t i) const { history_.prefetch(i); }
-  void prefetch(std::size_t i, int stage) const {
-    lists_.prefetch(i, stage);
-    if (stage == 0) {
-      history_.prefetch(i);
-      state_.log.prefetch(i);
-      locks_.prefetch(i);
-    }
-  }
 
 private:
   void defer(const Event& event) {

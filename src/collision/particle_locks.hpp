@@ -22,7 +22,6 @@ public:
   bool is_locked(std::size_t i) const { return locked_[i]; }
   void lock(std::size_t i) { locked_[i] = 1; }
   void unlock(std::size_t i) { locked_[i] = 0; }
-  void prefetch(std::size_t i) const { __builtin_prefetch(&locked_[i], 1); }
   std::size_t bytes() const { return locked_.capacity(); }
 
 private:
@@ -45,7 +44,6 @@ public:
     locked_.push_back(i);
   }
   bool is_locked(std::uint32_t i) const { return all_.is_locked(i); }
-  void prefetch(std::size_t i) const { all_.prefetch(i); }
 
 private:
   ParticleLocks& all_;

@@ -72,13 +72,6 @@ public:
     }
   }
 
-  void prefetch_partner(std::size_t i) const { history_.prefetch(i); }
-  void prefetch(std::size_t i, int stage) const {
-    if (stage == 0)
-      history_.prefetch(i);
-    broad_phase_.prefetch(i, stage);
-  }
-
 protected:
   const StepContext& step_;
 

@@ -42,7 +42,6 @@ public:
     entries_[i] = {time, step_, event_count(i) - 1};
   }
 
-  void prefetch(std::size_t i) const { __builtin_prefetch(&entries_[i], 1); }
   std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
 
 private:

@@ -155,14 +155,6 @@ void NeighbourLists::mark_dirty(std::span<const std::uint32_t> particles) {
   assert(sound());
 }
 
-void NeighbourLists::prefetch(std::size_t i, int stage) const {
-  if (stage == 0) {
-    interval_.prefetch(i);
-    references_.prefetch(i);
-  }
-  lists_.prefetch(i, stage, interval_.lines());
-}
-
 void NeighbourLists::release() {
   valid_ = false;
   step_.reset();

@@ -113,9 +113,6 @@ public:
     return nearest_image(step().particles.bodies[i], step().particles.bodies[j]);
   }
 
-  /// Brings what a hit of particle i needs into the cache, by three calls some time apart: stages 0, 1 and 2.
-  void prefetch(std::size_t i, int stage) const;
-
   /// Forgets all lists and frees most of their memory. Precondition: no step has begun.
   void release();
   std::size_t bytes() const;

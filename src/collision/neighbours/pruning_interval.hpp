@@ -78,9 +78,7 @@ public:
     return steps_.age == 0 && (a.tag | b.tag) == 0 && near(a.x, b.x) && near(a.y, b.y);
   }
 
-  const Line* lines() const { return lines_.data(); } ///< by particle
-  std::vector<Line>& buffer() { return lines_; }      ///< memory to be reused before begin()
-  void prefetch(std::size_t i) const { __builtin_prefetch(&lines_[i], 1); }
+  std::vector<Line>& buffer() { return lines_; } ///< memory to be reused before begin()
   void release();
   std::size_t bytes() const;
   /// True if the bookkeeping is consistent, for so many particles.

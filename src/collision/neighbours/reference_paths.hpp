@@ -43,7 +43,6 @@ public:
   /// Returns the position of a reference path at the middle of the lifetime.
   BoxPosition position(std::size_t i) const { return position_of(lines_[i]); }
 
-  void prefetch(std::size_t i) const { __builtin_prefetch(&lines_[i]); }
   void release() { cells_.release(); }
   /// True if there are lines of so many particles, and the cells hold them with rounding.
   bool sound(std::size_t particles) const;

@@ -55,23 +55,6 @@ void VerletList::move_to_end(Range& range, std::uint32_t room) {
   range.room = room;
 }
 
-void VerletList::prefetch(std::size_t i, int stage, const Line* lines) const {
-  assert(0 <= stage && stage <= 2);
-  if (stage == 0) {
-    __builtin_prefetch(&ranges_[i]);
-    return;
-  }
-  const Range& range = ranges_[i];
-  const std::uint32_t* const entries = entries_.data() + range.begin;
-  if (stage == 1) {
-    __builtin_prefetch(entries);
-    __builtin_prefetch(entries + range.count);
-  } else {
-    for (std::uint32_t k = 0; k < std::min(range.count, 32u); ++k)
-      __builtin_prefetch(&lines[entries[k]]);
-  }
-}
-
 bool VerletList::sound() const {
   std::vector<Range> in_order = ranges_;
   std::sort(in_order.begin(), in_order.end(), [](const Range& a, const Range& b) { return a.begin < b.begin; });

@@ -40,10 +40,6 @@ public:
   /// True if replaced lists have left so many holes that a new layout is better.
   bool outgrown() const { return entries_.size() > 2 * entries_laid_out_ + 4096; }
 
-  /// Brings what a search along the list of i needs into the cache, with lines[j] of its entries: stages 0, 1 and 2,
-  /// some time apart.
-  void prefetch(std::size_t i, int stage, const Line* lines) const;
-
   /// Frees the entries. Precondition: of the other calls only lay_out() and size() follow.
   void release() { entries_ = {}; }
   std::size_t bytes() const { return ranges_.capacity() * sizeof(Range) + entries_.capacity() * sizeof(std::uint32_t); }

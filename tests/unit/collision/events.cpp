@@ -92,21 +92,4 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("of the events known at the start it tells which come up, and of no others") {
-  Draws draws(1);
-  const std::vector<Event> known = draws.some(50, 7);
-  EventQueue queue;
-  queue.assign(known);
-  queue.add(draws.event(7));
-  std::vector<Event> sorted = known;
-  std::sort(sorted.begin(), sorted.end());
-  for (std::size_t by = 0; by < sorted.size(); ++by)
-    CHECK((queue.ahead(by)->key() == sorted[by].key()));
-  CHECK(queue.ahead(sorted.size()) == nullptr);
-  for (int taken = 0; taken < 51; ++taken)
-    queue.take_first();
-  CHECK(queue.ahead(0) == nullptr);
-  CHECK(queue.empty());
-}
-
 } // namespace events_test
