@@ -51,7 +51,8 @@ void SeriesFeed::refresh(const std::optional<runs::RingScale>& scale) {
 std::shared_ptr<const std::string> SeriesFeed::text() {
   if (scale_ && table_.rows() > 1 && table_.rows() != written_rows_ && writing_.due())
     writing_.spend([&] {
-      text_ = std::make_shared<std::string>(json_text(run_report::series_plots(table_, *scale_, std::nullopt)));
+      text_ =
+          std::make_shared<std::string>(json_text(json_of(run_report::series_plots(table_, *scale_, std::nullopt))));
       written_rows_ = table_.rows();
     });
   return text_;

@@ -38,7 +38,8 @@ private:
   std::optional<runs::RingScale> scale_;
   Throttle throttle_{0.5, fraction}, writing_{1.0, fraction};
   std::size_t written_rows_ = 0;
-  std::shared_ptr<const std::string> text_ = std::make_shared<std::string>(R"({"steady":null,"plots":[]})");
+  std::shared_ptr<const std::string> text_ =
+      std::make_shared<std::string>(R"({"steady":null,"plots":[],"snapshots":[]})");
 };
 
 } // namespace keeler::live_view

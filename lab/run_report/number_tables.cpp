@@ -39,8 +39,8 @@ std::string derived_table(const Scene& scene, const Patch& patch) {
   return report::html_table(rows);
 }
 
-std::string measured_table(const quantities::Record& numbers) {
-  Rows rows = table_of(numbers);
+std::string measured_table(const quantities::Record& numbers, std::optional<quantities::UnitSystem> system) {
+  Rows rows = table_of(numbers, system);
   rows.insert(rows.begin(), {"quantity", "value"});
   return report::html_table(rows);
 }

@@ -13,7 +13,7 @@ namespace keeler::run_report {
 std::string derived_table(const Scene& scene, const Patch& patch);
 
 /// Returns the numbers of `keeler analyze`, with errors.
-std::string measured_table(const quantities::Record& numbers);
+std::string measured_table(const quantities::Record& numbers, std::optional<quantities::UnitSystem> system);
 
 /// Returns all numbers, by their names in `keeler analyze --json`.
 std::string all_numbers(const quantities::Record& numbers);

@@ -20,6 +20,7 @@
 #include <keeler/report/html.hpp>
 #include <keeler/runs/measured_part.hpp>
 #include <keeler/runs/measurement.hpp>
+#include <keeler/runs/patch_units.hpp>
 #include <keeler/runs/run_view.hpp>
 #include <keeler/runs/summary.hpp>
 #include <keeler/scene/load.hpp>
@@ -46,7 +47,7 @@ constexpr int picture_width = 1200, lit_picture_width = 900, earlier_picture_wid
 constexpr std::size_t picture_bytes = 1'250'000, lit_picture_bytes = 450'000, earlier_picture_bytes = 430'000;
 
 // Particles measured, over all snapshots: limits the time that a page of large patches takes.
-constexpr std::size_t max_measured_particles = 3'000'000;
+constexpr std::size_t max_measured_particles = 3'000'000, max_singly_measured_particles = 1'000'000;
 
 // Returns at most `max_count` indices out of `count`, evenly spaced, with the first and the last.
 std::vector<std::size_t> evenly(std::size_t count, std::size_t max_count) {
@@ -55,6 +56,10 @@ std::vector<std::size_t> evenly(std::size_t count, std::size_t max_count) {
   for (std::size_t k = 0; k < n; ++k)
     indices.push_back(n == 1 ? count - 1 : k * (count - 1) / (n - 1));
   return indices;
+}
+
+bool contains(const std::vector<std::size_t>& indices, std::size_t index) {
+  return std::find(indices.begin(), indices.end(), index) != indices.end();
 }
 
 // Returns a script element with JSON. "</" is escaped, so that a title cannot end the element.
@@ -115,8 +120,8 @@ std::string figure(const Patch& patch, const std::vector<std::byte>& png, const 
 class RunPage {
 public:
   RunPage(const fs::path& folder, const RunReportOptions& options)
-      : folder_(folder), max_snapshots_(options.snapshots), progress_(options.progress), run_(runs::view_run(folder)),
-        files_(runs::snapshots_in(folder)) {}
+      : folder_(folder), max_snapshots_(options.snapshots), units_(options.units), progress_(options.progress),
+        run_(runs::view_run(folder)), files_(runs::snapshots_in(folder)) {}
 
   std::string html();
 
@@ -135,12 +140,14 @@ private:
 
   fs::path folder_;
   std::size_t max_snapshots_; // in the view
+  std::optional<quantities::UnitSystem> units_;
   PhaseProgress progress_;
   runs::RunView run_;
   std::vector<fs::path> files_;
   ParticleView particles_{max_particles_in_view};
   std::vector<Patch> pictured_;
-  io::SnapshotMeta meta_; // of the newest snapshot
+  std::vector<quantities::Record> measured_; // some of the viewed snapshots, one by one
+  io::SnapshotMeta meta_;                    // of the newest snapshot
   std::optional<Scene> scene_;
   std::optional<quantities::Record> summary_; // none while the run is in progress, or after it was killed
 };
@@ -148,6 +155,7 @@ private:
 void RunPage::read_snapshots() {
   const std::vector<std::size_t> viewed = evenly(files_.size(), max_snapshots_);
   const std::vector<std::size_t> drawn = evenly(viewed.size(), max_pictures);
+  std::vector<std::size_t> measured;
   progress_.begin("snapshots", static_cast<double>(viewed.size()));
   for (std::size_t k = 0; k < viewed.size(); ++k) {
     const fs::path& file = files_[viewed[k]];
@@ -155,7 +163,11 @@ void RunPage::read_snapshots() {
     initial_conditions::require_possible(snapshot.patch, file.string());
     particles_.add(snapshot.patch, file.filename().string());
     meta_ = std::move(snapshot.meta);
-    if (std::find(drawn.begin(), drawn.end(), k) != drawn.end())
+    if (k == 0)
+      measured = evenly(viewed.size(), max_singly_measured_particles / snapshot.patch.size());
+    if (measured.size() > 1 && contains(measured, k))
+      measured_.push_back(record_of(runs::measure({&snapshot.patch, 1}, {})));
+    if (contains(drawn, k))
       pictured_.push_back(std::move(snapshot.patch));
     progress_.add(1.0);
   }
@@ -221,11 +233,15 @@ std::string RunPage::plots(const runs::TransportReport& report) const {
         steady->steady ? "where the run is steady" : "the best available part, though the run is not steady yet");
   if (steady && steady->waves)
     words += fmt::format(" Axisymmetric waves as long as the box hold {}.", describe(*steady->waves));
-  words += " Curves are means over consecutive rows, bands their standard errors where a mean is over several "
-           "rows. Drag along an axis to zoom, double-click to see all.";
+  words +=
+      " Curves are means over consecutive rows, bands their standard errors where a mean is over several "
+      "rows. Drag along an axis to zoom, double-click to see all. In the last plot any quantity may be on either axis: "
+      "the curves, and the numbers of keeler analyze of single snapshots.";
   const runs::RingScale scale = runs::RingScale::of(pictured_.back(), !scene_->external_forces.empty());
+  const DrawnUnits units{units_.value_or(quantities::UnitSystem::si), runs::units_of(pictured_.back())};
   return section("series", "Through time", note(words) + "<div id=\"plots\"></div>\n") +
-         data_element("series-data", series_plots(run_.series, scale, steady));
+         data_element("series-data",
+                      json_of(series_plots(run_.series, scale, steady, units), number_curves(measured_, units)));
 }
 
 std::string RunPage::measured(runs::MeasuredPart part) {
@@ -238,7 +254,7 @@ std::string RunPage::measured(runs::MeasuredPart part) {
       note(fmt::format("The numbers of `keeler analyze`: structure from {}; viscosities and the balance over the "
                        "orbits of the means above.",
                        pluralize(part.stored.patches.size(), "snapshot"))) +
-          measured_table(numbers) + folded("All numbers, by their names in JSON", all_numbers(numbers)));
+          measured_table(numbers, units_) + folded("All numbers, by their names in JSON", all_numbers(numbers)));
 }
 
 std::string RunPage::accuracy() const {

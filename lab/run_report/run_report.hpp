@@ -3,10 +3,12 @@
 #pragma once
 
 #include <keeler/core/progress.hpp>
+#include <keeler/quantities/quantity.hpp>
 
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace keeler::run_report {
@@ -14,7 +16,8 @@ namespace keeler::run_report {
 inline constexpr std::size_t max_particles_in_view = 100'000; ///< of more, the view shows this many, evenly by id
 
 struct RunReportOptions {
-  std::size_t snapshots = 8; ///< maximum number in the view, evenly through the run
+  std::size_t snapshots = 8;                   ///< maximum number in the view, evenly through the run
+  std::optional<quantities::UnitSystem> units; ///< of velocities and viscosities; none: those of each number
   std::function<void(const Progress&)> progress;
 };
 

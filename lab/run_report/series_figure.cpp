@@ -10,42 +10,36 @@
 #include <fmt/format.h>
 
 #include <cassert>
+#include <cmath>
 
 namespace keeler::run_report {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // Returns "translational  0.0017 ± 0.0001", or the name alone if there is no mean.
-std::string name_with_mean(const Json& curve) {
-  const auto name = curve["name"].get<std::string>();
-  const Json& mean = curve["mean"];
-  if (!mean.is_object() || !mean["value"].is_number())
-    return name;
-  return fmt::format("{}  {}{}", name, format_number(mean["value"], 3),
-                     mean["error"].is_number() ? " ± " + format_number(mean["error"], 2) : "");
+std::string name_with_mean(const SeriesCurve& curve) {
+  if (!curve.mean || !std::isfinite(curve.mean->value))
+    return curve.name;
+  return fmt::format("{}  {}{}", curve.name, format_number(curve.mean->value, 3),
+                     std::isfinite(curve.mean->error) ? " ± " + format_number(curve.mean->error, 2) : "");
 }
 
-plot::Panel panel_of(const Json& plot) {
-  const auto title = plot["title"].get<std::string>(), unit = plot["unit"].get<std::string>();
-  plot::Panel panel{.title = unit.empty() ? title : fmt::format("{} ({})", title, unit),
+plot::Panel panel_of(const SeriesPlot& plot) {
+  plot::Panel panel{.title = plot.unit.empty() ? plot.title : fmt::format("{} ({})", plot.title, plot.unit),
                     .x = {.label = "time (orbits)"}};
-  for (const Json& curve : plot["curves"]) {
+  for (const SeriesCurve& curve : plot.curves) {
     plot::PlotCurve drawn{.name = name_with_mean(curve), .colour = panel.curves.size(), .band = true};
-    for (const Json& point : curve["points"])
-      drawn.points.push_back({point[0], point[1], point[2].is_number() ? point[2].get<double>() : 0.0});
+    for (const SeriesPoint& point : curve.points)
+      drawn.points.push_back({point.orbits, point.value, point.error.value_or(0.0)});
     panel.curves.push_back(drawn);
   }
   return panel;
 }
 
-} // namespace
-
-plot::Figure series_figure(const Json& plots, const std::string& title, bool light) {
-  assert(!plots["plots"].empty());
+plot::Figure series_figure(const SeriesPlots& plots, const std::string& title, bool light) {
+  assert(!plots.plots.empty());
   plot::Figure figure{.title = title, .columns = 2, .width = 1200, .panel_height = 200};
   figure.look.theme = light ? plot::light_theme : plot::dark_theme;
-  for (const Json& plot : plots["plots"])
+  for (const SeriesPlot& plot : plots.plots)
     figure.panels.push_back(panel_of(plot));
   plot::AxisRange times;
   for (const plot::Panel& panel : figure.panels)
@@ -54,14 +48,16 @@ plot::Figure series_figure(const Json& plots, const std::string& title, bool lig
         times.include(point.x);
   for (plot::Panel& panel : figure.panels)
     panel.x.range = times.low < times.high ? times : plot::AxisRange();
-  if (const Json& steady = plots["steady"]; steady.is_array()) {
-    figure.note =
-        fmt::format("means of orbits {} to {} (shaded)", format_number(steady[0], 3), format_number(steady[1], 4));
+  if (const auto& steady = plots.steady) {
+    figure.note = fmt::format("means of orbits {} to {} (shaded)", format_number(steady->since_orbit, 3),
+                              format_number(steady->until_orbit, 4));
     for (plot::Panel& panel : figure.panels)
-      panel.shaded = {steady[0], steady[1]};
+      panel.shaded = {steady->since_orbit, steady->until_orbit};
   }
   return figure;
 }
+
+} // namespace
 
 plot::Figure run_series_figure(const std::filesystem::path& folder, bool light) {
   const runs::RunView run = runs::view_run(folder);

@@ -20,46 +20,36 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t max_points = 200; // per curve
 
-struct Curve {
-  std::string column, name;
+// A column and how it is drawn.
+struct Drawn {
+  std::string column, title, name;
+  quantities::Unit unit; // in SI: sums are drawn as they are, events per orbit, fluxes as viscosities
   runs::ColumnKind kind = runs::ColumnKind::value;
 };
 
-struct Plot {
-  std::string title, unit;
-  std::vector<Curve> curves;
-};
-
-// Returns the unit of a curve: sums are drawn as they are, events per orbit, fluxes as viscosities.
-std::string drawn_unit(const runs::SeriesColumn& column) {
-  const std::string unit = column.unit;
-  return column.kind == runs::ColumnKind::count  ? "per orbit"
-         : column.kind == runs::ColumnKind::flux ? "m²/s"
-         : unit == "1"                           ? ""
-                                                 : unit;
+quantities::Unit drawn_unit(const runs::SeriesColumn& column) {
+  namespace unit = quantities::unit;
+  const std::string_view text = column.unit;
+  return column.kind == runs::ColumnKind::count                                  ? unit::unnamed("per orbit")
+         : column.kind == runs::ColumnKind::flux || text == unit::viscosity.text ? unit::viscosity
+         : text == unit::metres_per_second.text                                  ? unit::metres_per_second
+                                                : unit::unnamed(text == "1" ? "" : text);
 }
 
-// Returns the plots of a series. Columns unknown to this program have plots titled with their names.
-std::vector<Plot> plots_of(const io::SeriesTable& series) {
-  std::vector<Plot> plots;
-  const auto curve_of = [&](const std::string& title, const std::string& unit, const Curve& curve) {
-    const auto same = std::find_if(plots.begin(), plots.end(), [&](const Plot& plot) { return plot.title == title; });
-    if (same != plots.end())
-      same->curves.push_back(curve);
-    else
-      plots.push_back({title, unit, {curve}});
-  };
+// Returns what is drawn of a series. Columns unknown to this program have plots titled with their names.
+std::vector<Drawn> drawn_columns(const io::SeriesTable& series) {
+  std::vector<Drawn> all;
   std::set<std::string> known = {"step", "time_orbits"};
   for (const runs::SeriesColumn& column : runs::series_columns()) {
     const std::string plot = column.plot;
     const std::size_t colon = plot.find(": ");
     if (known.insert(column.name).second)
-      curve_of(plot.substr(0, colon), drawn_unit(column), {column.name, plot.substr(colon + 2), column.kind});
+      all.push_back({column.name, plot.substr(0, colon), plot.substr(colon + 2), drawn_unit(column), column.kind});
   }
   for (const std::string& name : series.names)
     if (!known.contains(name))
-      curve_of(name, "", {name, name});
-  return plots;
+      all.push_back({name, name, name, {}});
+  return all;
 }
 
 struct Points {
@@ -67,7 +57,7 @@ struct Points {
 };
 
 // Returns the points of a curve; unknown values (NaN) are omitted.
-Points points_of(const io::SeriesTable& series, const Curve& curve, const runs::RingScale& scale) {
+Points points_of(const io::SeriesTable& series, const Drawn& curve, const runs::RingScale& scale) {
   const std::vector<double>&times = series.of("time_orbits"), &column = series.of(curve.column);
   const double orbit_s = 2.0 * std::numbers::pi / scale.orbital_frequency;
   const double unit =
@@ -86,11 +76,11 @@ Points points_of(const io::SeriesTable& series, const Curve& curve, const runs::
   return points;
 }
 
-// Returns bins of consecutive rows: [time, mean, standard error of the mean or null].
-Json binned(const Points& points) {
+// Returns means over bins of consecutive rows.
+std::vector<SeriesPoint> binned(const Points& points) {
   assert(points.times.size() == points.values.size());
   const std::size_t bins = std::min(max_points, points.times.size());
-  Json all = Json::array();
+  std::vector<SeriesPoint> all;
   for (std::size_t b = 0; b < bins; ++b) {
     const std::size_t from = b * points.times.size() / bins, to = (b + 1) * points.times.size() / bins;
     const auto part = [&](const std::vector<double>& all_of) {
@@ -99,30 +89,44 @@ Json binned(const Points& points) {
           {begin + static_cast<std::ptrdiff_t>(from), begin + static_cast<std::ptrdiff_t>(to)});
     };
     const statistics::Scatter values = part(points.values);
-    all.push_back({part(points.times).mean, values.mean, quantities::or_null(values.mean_error())});
+    const double error = values.mean_error();
+    all.push_back({part(points.times).mean, values.mean, std::isfinite(error) ? std::optional(error) : std::nullopt});
   }
   return all;
 }
 
-Json numbers_of_estimate(const Estimate& mean) {
-  return {{"value", quantities::or_null(mean.value)}, {"error", quantities::or_null(mean.error)}};
-}
-
-// Returns the mean over the steady part: for viscosities the value of the tables, otherwise the mean of the rows; null
+// Returns the mean over the steady part: for viscosities the value of the tables, otherwise the mean of the rows; none
 // if there are none.
-Json steady_mean(const Curve& curve, const Points& points, const runs::Transport& steady) {
+std::optional<Estimate> steady_mean(const Drawn& curve, const Points& points, const runs::Transport& steady) {
   if (curve.column == "translational_flux_kg_m2_s")
-    return numbers_of_estimate(steady.translational);
+    return steady.translational;
   if (curve.column == "collisional_flux_kg_m2_s")
-    return numbers_of_estimate(steady.collisional);
+    return steady.collisional;
   if (curve.column == "gravitational_viscosity_m2_s")
-    return steady.gravitational ? numbers_of_estimate(*steady.gravitational) : Json(nullptr);
+    return steady.gravitational;
   std::vector<double> values;
   for (std::size_t k = 0; k < points.times.size(); ++k)
     if (points.times[k] >= steady.since_orbit && points.times[k] <= steady.until_orbit)
       values.push_back(points.values[k]);
-  return values.empty() || curve.kind == runs::ColumnKind::sum ? Json(nullptr)
-                                                               : numbers_of_estimate(statistics::block_mean(values));
+  return values.empty() || curve.kind == runs::ColumnKind::sum ? std::nullopt
+                                                               : std::optional(statistics::block_mean(values));
+}
+
+void divide(SeriesCurve& curve, double size) {
+  for (SeriesPoint& point : curve.points) {
+    point.value /= size;
+    if (point.error)
+      *point.error /= size;
+  }
+  if (curve.mean)
+    *curve.mean = {curve.mean->value / size, curve.mean->error / size};
+}
+
+// Returns a number of a record, of a vector the component along the axis.
+std::optional<double> plain_number(const quantities::Record& record, const quantities::Quantity& of, std::size_t axis) {
+  const quantities::Value* const value = find_value(record, of.name);
+  const auto* const vector = value ? std::get_if<std::vector<double>>(value) : nullptr;
+  return vector ? std::optional((*vector)[axis]) : number_in(record, of.name);
 }
 
 } // namespace
@@ -132,27 +136,66 @@ std::optional<runs::Transport> steady_part(const runs::TransportReport& report) 
   return found && found->since_found ? found : std::nullopt;
 }
 
-Json series_plots(const io::SeriesTable& series, const runs::RingScale& scale,
-                  const std::optional<runs::Transport>& steady) {
-  Json all = {{"steady", nullptr}, {"plots", Json::array()}};
-  if (steady)
-    all["steady"] = {steady->since_orbit, steady->until_orbit};
-  for (const Plot& plot : plots_of(series)) {
-    Json json = {{"title", plot.title}, {"unit", plot.unit}, {"curves", Json::array()}};
-    for (const Curve& curve : plot.curves) {
-      if (series.find(curve.column) == nullptr)
-        continue;
-      const Points points = points_of(series, curve, scale);
-      if (points.times.empty())
-        continue;
-      json["curves"].push_back({{"name", curve.name},
-                                {"points", binned(points)},
-                                {"mean", steady ? steady_mean(curve, points, *steady) : Json(nullptr)}});
-    }
-    if (!json["curves"].empty())
-      all["plots"].push_back(json);
+SeriesPlots series_plots(const io::SeriesTable& series, const runs::RingScale& scale,
+                         const std::optional<runs::Transport>& steady, const DrawnUnits& units) {
+  SeriesPlots all{steady, {}};
+  for (const Drawn& column : drawn_columns(series)) {
+    const Points points = series.find(column.column) ? points_of(series, column, scale) : Points();
+    if (points.times.empty())
+      continue;
+    SeriesCurve curve{column.name, binned(points), steady ? steady_mean(column, points, *steady) : std::nullopt};
+    divide(curve, size_of_unit(column.unit, units.system, units.patch));
+    const auto same = std::find_if(all.plots.begin(), all.plots.end(),
+                                   [&](const SeriesPlot& plot) { return plot.title == column.title; });
+    SeriesPlot& plot = same != all.plots.end()
+                           ? *same
+                           : all.plots.emplace_back(
+                                 SeriesPlot{column.title, std::string(unit_in(column.unit, units.system).text), {}});
+    plot.curves.push_back(std::move(curve));
   }
   return all;
+}
+
+std::vector<SeriesPlot> number_curves(std::span<const quantities::Record> records, const DrawnUnits& units) {
+  std::vector<SeriesPlot> all;
+  if (records.empty())
+    return all;
+  for (const quantities::Quantity& of : quantities_of(records.front()))
+    for (std::size_t axis = 0; axis < (of.shape == quantities::Shape::vector ? 3 : 1); ++axis) {
+      const quantities::Quantity one = of.shape == quantities::Shape::vector ? of.along(axis) : of;
+      SeriesCurve curve{"", {}};
+      for (const quantities::Record& record : records)
+        if (const std::optional<double> value = plain_number(record, of, axis); value && std::isfinite(*value))
+          curve.points.push_back({number_in(record, "time").value(), *value, std::nullopt});
+      divide(curve, size_of_unit(one.unit, units.system, units.patch));
+      if (!curve.points.empty())
+        all.push_back({one.full_name(units.system), std::string(unit_in(one.unit, units.system).text), {curve}});
+    }
+  return all;
+}
+
+Json json_of(const SeriesPlots& plots, std::span<const SeriesPlot> snapshots) {
+  using quantities::or_null;
+  const auto list_of = [](std::span<const SeriesPlot> some) {
+    Json list = Json::array();
+    for (const SeriesPlot& plot : some) {
+      Json curves = Json::array();
+      for (const SeriesCurve& curve : plot.curves) {
+        Json points = Json::array(), mean = nullptr;
+        for (const SeriesPoint& point : curve.points)
+          points.push_back({point.orbits, point.value, or_null(point.error)});
+        if (curve.mean)
+          mean = {{"value", or_null(curve.mean->value)}, {"error", or_null(curve.mean->error)}};
+        curves.push_back({{"name", curve.name}, {"points", points}, {"mean", mean}});
+      }
+      list.push_back({{"title", plot.title}, {"unit", plot.unit}, {"curves", curves}});
+    }
+    return list;
+  };
+  Json steady = nullptr;
+  if (plots.steady)
+    steady = {plots.steady->since_orbit, plots.steady->until_orbit};
+  return {{"steady", steady}, {"plots", list_of(plots.plots)}, {"snapshots", list_of(snapshots)}};
 }
 
 } // namespace keeler::run_report

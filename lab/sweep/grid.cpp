@@ -4,7 +4,6 @@
 #include <keeler/core/error.hpp>
 #include <keeler/files/input.hpp>
 #include <keeler/files/toml_bounds.hpp>
-#include <keeler/runs/measurement.hpp>
 #include <keeler/scene/keys.hpp>
 
 #include <fmt/format.h>
@@ -321,14 +320,12 @@ private:
 };
 
 // Returns the named quantities and the plotted one.
-batch::RunQuantities quantities_of(const Grid& grid, std::vector<std::string> names) {
-  batch::RunQuantities all(names);
-  if (all.find(grid.plot.y))
-    return all;
-  if (const std::vector<quantities::Quantity> measured = runs::measured_quantities();
-      find_quantity(measured, grid.plot.y)) {
+batch::RunQuantities quantities_of(const Grid& grid, std::vector<std::string> names,
+                                   std::optional<quantities::UnitSystem> units) {
+  batch::RunQuantities all(names, units);
+  if (!all.find(grid.plot.y) && find_quantity(batch::RunQuantities::known(), grid.plot.y)) {
     names.push_back(grid.plot.y);
-    all = batch::RunQuantities(names);
+    all = batch::RunQuantities(names, units);
   }
   if (all.find(grid.plot.y))
     return all;
@@ -336,15 +333,16 @@ batch::RunQuantities quantities_of(const Grid& grid, std::vector<std::string> na
   for (const batch::RunColumn& column : all.columns())
     columns.push_back(column.name);
   throw UsageError(fmt::format("{}: y = \"{}\" is not measured by a sweep; choose one of {}, or a plain number of "
-                               "keeler analyze by its full name (\"keeler help numbers\" lists them)",
+                               "a run (\"keeler help numbers\" lists them)",
                                grid.plot.y_position, grid.plot.y, fmt::join(columns, ", ")));
 }
 
 } // namespace
 
-Grid read_grid(const fs::path& file, const std::vector<std::string>& quantities) {
+Grid read_grid(const fs::path& file, const std::vector<std::string>& quantities,
+               std::optional<quantities::UnitSystem> units) {
   Grid grid = GridReader(file).read();
-  grid.quantities = quantities_of(grid, quantities);
+  grid.quantities = quantities_of(grid, quantities, units);
   return grid;
 }
 

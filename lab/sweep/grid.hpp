@@ -57,8 +57,10 @@ struct Grid {
   batch::RunQuantities quantities; ///< columns of the tables
 };
 
-/// Reads a grid, with additional quantities for its tables. Its keys and values are not checked against the scene.
-/// Throws UsageError "file:line:column: problem; what to do" for the first fault.
-Grid read_grid(const std::filesystem::path& file, const std::vector<std::string>& quantities = {});
+/// Reads a grid, with additional quantities for its tables and the units of their velocities and viscosities. Its keys
+/// and values are not checked against the scene. Throws UsageError "file:line:column: problem; what to do" for the
+/// first fault.
+Grid read_grid(const std::filesystem::path& file, const std::vector<std::string>& quantities = {},
+               std::optional<quantities::UnitSystem> units = std::nullopt);
 
 } // namespace keeler::sweep

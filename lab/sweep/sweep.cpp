@@ -101,7 +101,7 @@ std::string write_tables(const Grid& grid, const Plan& plan, const batch::RunFol
 
 SweepResult sweep(const SweepSettings& settings, const runs::RunRequests& requests) {
   assert(settings.jobs > 0 && settings.notice);
-  const Grid grid = read_grid(settings.grid, settings.quantities);
+  const Grid grid = read_grid(settings.grid, settings.quantities, settings.units);
   SweepResult result;
   Plan plan;
   try {

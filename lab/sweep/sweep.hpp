@@ -10,13 +10,15 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace keeler::sweep {
 
 struct SweepSettings : batch::BatchSettings {
   std::filesystem::path grid;
-  bool tables_only = false; ///< start no run, only write the tables of finished runs
+  std::optional<quantities::UnitSystem> units; ///< of velocities and viscosities in the tables
+  bool tables_only = false;                    ///< start no run, only write the tables of finished runs
 };
 
 /// The state of the folder after a call.

@@ -97,9 +97,8 @@ inline CLI::Option& one_of(CLI::Option* option, const std::vector<std::string>& 
 /// Adds --quantities NAME,…: columns of a table of runs.
 inline void add_quantities(CLI::App& command, std::vector<std::string>& names) {
   command
-      .add_option(
-          "--quantities", names,
-          "further columns: numbers of keeler analyze, separated by commas (\"keeler help numbers\" lists them)")
+      .add_option("--quantities", names,
+                  "further columns: numbers of a run, separated by commas (\"keeler help numbers\" lists them)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NAME,...");

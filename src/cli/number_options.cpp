@@ -4,6 +4,13 @@
 
 namespace keeler::cli {
 
+void UnitsOption::add_to(CLI::App& command) {
+  one_of(command.add_option("--units", system_,
+                            "units of velocities and viscosities: si; radius (r Omega, r^2 Omega); gravity (G "
+                            "Sigma/Omega, G^2 Sigma^2/Omega^3)"),
+         {"si", "radius", "gravity"});
+}
+
 void NumberOptions::add_to(CLI::App& command) {
   command
       .add_option("--only", names_,
@@ -11,13 +18,10 @@ void NumberOptions::add_to(CLI::App& command) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NAME,...");
-  one_of(command.add_option("--units", system_,
-                            "units of velocities and viscosities: si; radius (r Omega, r^2 Omega); gravity (G "
-                            "Sigma/Omega, G^2 Sigma^2/Omega^3)"),
-         {"si", "radius", "gravity"});
+  units_.add_to(command);
 }
 
-std::optional<quantities::UnitSystem> NumberOptions::system() const {
+std::optional<quantities::UnitSystem> UnitsOption::system() const {
   if (system_.empty())
     return std::nullopt;
   return system_ == "si"       ? quantities::UnitSystem::si

@@ -11,13 +11,24 @@
 
 namespace keeler::cli {
 
-/// --only NAME,… and --units SYSTEM.
-class NumberOptions {
+/// --units SYSTEM.
+class UnitsOption {
 public:
   void add_to(CLI::App& command);
 
   /// Returns the requested units; none: the default units of each number.
   std::optional<quantities::UnitSystem> system() const;
+
+private:
+  std::string system_;
+};
+
+/// --only NAME,… and --units SYSTEM.
+class NumberOptions {
+public:
+  void add_to(CLI::App& command);
+
+  std::optional<quantities::UnitSystem> system() const { return units_.system(); }
 
   /// Checks the names before anything is measured. Throws UsageError for a name that none of the quantities has.
   void check(std::span<const quantities::Quantity> quantities) const { require_names(quantities, names_); }
@@ -29,7 +40,7 @@ public:
 
 private:
   std::vector<std::string> names_;
-  std::string system_;
+  UnitsOption units_;
 };
 
 } // namespace keeler::cli

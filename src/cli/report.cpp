@@ -1,6 +1,7 @@
 // keeler report: writes a page about a run.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "number_options.hpp"
 #include "progress_line.hpp"
 #include "results.hpp"
 
@@ -22,6 +23,7 @@ struct ReportOptions {
   std::string folder;
   std::optional<std::string> output;
   run_report::RunReportOptions page;
+  UnitsOption units;
   ThreadOption threads;
 };
 
@@ -31,6 +33,7 @@ ExitCode report(ReportOptions& options) {
   if (!fs::is_directory(options.folder))
     throw UsageError(fmt::format("no report of '{}': it is not a folder; name the folder of a run", options.folder));
   require_replaceable(file, "a report", "<!DOCTYPE html>");
+  options.page.units = options.units.system();
   std::string page;
   {
     ProgressLine line;
@@ -55,6 +58,7 @@ void add_report(CLI::App& program, Action& action) {
       .add_option("--snapshots", options->page.snapshots,
                   "largest number of snapshots in the 3-D view, evenly spaced in the run (default: 8)")
       ->transform(whole_number_between(1, 1000, "a number of snapshots"));
+  options->units.add_to(command);
   options->threads.add_to(command);
   examples_of(command, {"keeler report wakes", "keeler report wakes --snapshots 20 -o page.html"});
   command.callback([options, &action] { action = [options] { return report(*options); }; });

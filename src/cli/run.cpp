@@ -2,6 +2,7 @@
 #include "command.hpp"
 #include "common_options.hpp"
 #include "messages.hpp"
+#include "number_options.hpp"
 #include "print_record.hpp"
 #include "progress_line.hpp"
 #include "results.hpp"
@@ -22,6 +23,7 @@ struct JobOptions {
   std::optional<std::string> from;
   double until = 0.0, wall_time = 0.0;
   bool force = false, check = false, json = false;
+  UnitsOption units;
   ThreadOption threads;
   TalkOption talk;
 };
@@ -50,7 +52,7 @@ runs::RunOptions run_options(const JobOptions& job, const std::vector<std::strin
 ExitCode report(const JobOptions& job, const runs::RunResult& result, const Communicator& ranks) {
   if (!ranks.is_root())
     return result.finished ? ExitCode::done : ExitCode::stopped;
-  print_record(result.summary, job.json);
+  print_record(result.summary, job.json, job.units.system());
   if (!job.json)
     print("{:<34} {}\n", "folder", job.folder);
   if (result.finished)
@@ -64,6 +66,7 @@ void add_common(CLI::App& command, JobOptions& job) {
       ->check(positive_number());
   command.add_flag("--check", job.check, "check all invariants in every step; slower, with identical results");
   command.add_flag("--json", job.json, "print the summary as JSON");
+  job.units.add_to(command);
   job.threads.add_to(command);
   job.talk.add_to(command);
 }

@@ -2,6 +2,7 @@
 #include "command.hpp"
 #include "common_options.hpp"
 #include "messages.hpp"
+#include "number_options.hpp"
 #include "print.hpp"
 #include "progress_line.hpp"
 #include "results.hpp"
@@ -24,6 +25,7 @@ namespace {
 struct SweepOptions {
   sweep::SweepSettings settings;
   bool json = false;
+  UnitsOption units;
   TalkOption talk;
 };
 
@@ -58,6 +60,7 @@ ExitCode carry_out(SweepOptions& options) {
   options.talk.say_program();
   sweep::SweepSettings& settings = options.settings;
   require_folder_name(settings.folder);
+  settings.units = options.units.system();
   if (settings.jobs == 0)
     settings.jobs = static_cast<std::size_t>(std::max(1, threads() / settings.threads_per_run));
   sweep::SweepResult result;
@@ -106,6 +109,7 @@ void add_sweep(CLI::App& program, Action& action) {
   command.add_option("--threads", settings.threads_per_run, "threads of each run (default: 1)")
       ->transform(thread_number());
   add_quantities(command, settings.quantities);
+  options->units.add_to(command);
   command.add_flag("--tables", settings.tables_only,
                    "start no runs: write the tables and the figure of the finished ones");
   options->talk.add_to(command);

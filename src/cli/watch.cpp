@@ -1,11 +1,14 @@
 // keeler watch: shows a run from another terminal.
 #include "command.hpp"
+#include "number_options.hpp"
 #include "print.hpp"
 #include "terminal.hpp"
 
 #include <keeler/core/format.hpp>
+#include <keeler/runs/patch_units.hpp>
 #include <keeler/runs/run_view.hpp>
 #include <keeler/runs/series_columns.hpp>
+#include <keeler/runs/stored_patches.hpp>
 
 #include <fmt/format.h>
 
@@ -21,11 +24,25 @@
 namespace keeler::cli {
 namespace {
 
-constexpr int label_columns = 18, value_columns = 10;
+namespace unit = quantities::unit;
+
+constexpr std::size_t min_label_columns = 18, value_columns = 10;
+
+// The units in which velocities and viscosities are shown.
+struct ShownUnits {
+  quantities::UnitSystem system;
+  quantities::PatchUnits patch;
+};
 
 struct Line {
   const char* column; ///< of the series
   const char* label;
+  quantities::Unit unit{}; ///< if it depends on the system of units; otherwise it is part of the label
+
+  std::string full_label(const ShownUnits& units) const {
+    return unit.text.empty() ? label
+                             : fmt::format("{}, {}", label, quantities::ascii(unit_in(unit, units.system).text));
+  }
 
   /// True for columns that accumulate since the start of the run; their rate per orbit is shown.
   bool counts() const {
@@ -36,13 +53,13 @@ struct Line {
 };
 
 constexpr Line lines[] = {
-    {"dispersion_x_m_s", "c_x, m/s"},
-    {"dispersion_z_m_s", "c_z, m/s"},
+    {"dispersion_x_m_s", "c_x", unit::metres_per_second},
+    {"dispersion_z_m_s", "c_z", unit::metres_per_second},
     {"scale_height_m", "height, m"},
     {"collisions", "collisions/orbit"},
     {"energy_lost_j", "loss, J/orbit"},
-    {"translational_viscosity_m2_s", "nu trans., m2/s"},
-    {"gravitational_viscosity_m2_s", "nu grav., m2/s"},
+    {"translational_viscosity_m2_s", "nu trans.", unit::viscosity},
+    {"gravitational_viscosity_m2_s", "nu grav.", unit::viscosity},
     {"spin_dispersion_omega", "spins, Omega"},
     {"step_orbits", "step, orbits"},
 };
@@ -95,7 +112,7 @@ std::string state_and_time_left(const runs::RunView& view) {
 }
 
 // Returns the text of the screen; no line is longer than `width`.
-std::string text_of(const runs::RunView& view, const std::string& folder, int width) {
+std::string text_of(const runs::RunView& view, const std::string& folder, int width, const ShownUnits& units) {
   const auto columns = static_cast<std::size_t>(width);
   std::vector<std::string> text = {
       folder, state_and_time_left(view),
@@ -108,13 +125,17 @@ std::string text_of(const runs::RunView& view, const std::string& folder, int wi
   std::string all;
   for (const std::string& line : text)
     all += line.substr(0, columns) + "\n";
+  std::size_t label_columns = min_label_columns;
+  for (const Line& line : lines)
+    label_columns = std::max(label_columns, line.full_label(units).size() + 1);
   for (const Line& line : lines)
     if (view.series.find(line.column) != nullptr) {
       const std::vector<double> values = values_of(view.series, line);
       if (values.empty())
         continue;
+      const double value = values.back() / size_of_unit(line.unit, units.system, units.patch);
       const std::string numbers =
-          fmt::format("{:<{}}{:>{}}  ", line.label, label_columns, format_number(values.back(), 3), value_columns);
+          fmt::format("{:<{}}{:>{}}  ", line.full_label(units), label_columns, format_number(value, 3), value_columns);
       all += numbers.substr(0, columns);
       if (numbers.size() < columns)
         all += small_plot(values, columns - numbers.size());
@@ -124,11 +145,14 @@ std::string text_of(const runs::RunView& view, const std::string& folder, int wi
 }
 
 // Prints the state of the run: on a terminal every second, redrawn in place, until the run ends; otherwise once.
-ExitCode watch(const std::string& folder) {
+ExitCode watch(const std::string& folder, quantities::UnitSystem system) {
+  ShownUnits units{system, {}};
+  if (system != quantities::UnitSystem::si)
+    units.patch = runs::units_of(runs::load_newest_patch(folder).patches.front());
   const bool terminal = isatty(STDOUT_FILENO) == 1;
   for (;;) {
     const runs::RunView view = runs::view_run(folder);
-    const std::string text = text_of(view, folder, terminal_width(STDOUT_FILENO));
+    const std::string text = text_of(view, folder, terminal_width(STDOUT_FILENO), units);
     if (terminal)
       fmt::print("\033[H\033[J");
     print("{}", text);
@@ -143,10 +167,14 @@ ExitCode watch(const std::string& folder) {
 
 void add_watch(CLI::App& program, Action& action) {
   const auto folder = std::make_shared<std::string>();
+  const auto units = std::make_shared<UnitsOption>();
   CLI::App& command = *program.add_subcommand("watch", "show a run from another terminal while it works");
   command.add_option("DIR", *folder, "the folder of the run")->required()->type_name("");
-  examples_of(command, {"keeler watch wakes"});
-  command.callback([folder, &action] { action = [folder] { return watch(*folder); }; });
+  units->add_to(command);
+  examples_of(command, {"keeler watch wakes", "keeler watch wakes --units radius"});
+  command.callback([folder, units, &action] {
+    action = [folder, units] { return watch(*folder, units->system().value_or(quantities::UnitSystem::si)); };
+  });
 }
 
 } // namespace keeler::cli

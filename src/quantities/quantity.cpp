@@ -53,8 +53,18 @@ Quantity of_shape(Quantity quantity, Shape shape) {
   return quantity;
 }
 
+Quantity of_digits(int digits, Quantity quantity) {
+  assert(digits > 0);
+  quantity.digits = digits;
+  return quantity;
+}
+
 Quantity word(const std::string& name, const std::string& label, const std::string& meaning) {
   return of_shape({name, unit::none, label, meaning}, Shape::other);
+}
+
+Quantity yes_or_no(const std::string& name, const std::string& label, const std::string& meaning) {
+  return of_shape({name, unit::none, label, meaning}, Shape::truth);
 }
 
 Value value_of(const std::optional<double>& number, const std::string& why_not) {

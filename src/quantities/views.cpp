@@ -289,9 +289,9 @@ std::string lines_of(const Record& record, std::optional<UnitSystem> system) {
   return lines;
 }
 
-std::vector<std::vector<std::string>> table_of(const Record& record) {
+std::vector<std::vector<std::string>> table_of(const Record& record, std::optional<UnitSystem> system) {
   std::vector<std::vector<std::string>> rows;
-  for (const TextRow& row : rows_of(record, std::nullopt))
+  for (const TextRow& row : rows_of(record, system))
     rows.push_back({row.label, row.text});
   return rows;
 }

@@ -28,7 +28,7 @@ std::string text_of(const Entry& entry, const PatchUnits& units, std::optional<U
 std::string lines_of(const Record& record, std::optional<UnitSystem> system = std::nullopt);
 
 /// Returns rows (label, value with unit) of the entries with a label.
-std::vector<std::vector<std::string>> table_of(const Record& record);
+std::vector<std::vector<std::string>> table_of(const Record& record, std::optional<UnitSystem> system = std::nullopt);
 
 /// Returns a Markdown table: name, unit, meaning.
 std::string markdown_of(std::span<const Quantity> quantities);

@@ -17,61 +17,61 @@
 namespace keeler::runs {
 namespace {
 
+namespace unit = quantities::unit;
+using quantities::Forms, quantities::Quantity, quantities::QuantityRow, quantities::Record, quantities::Shape,
+    quantities::Spread, quantities::Uncertain, quantities::Unknown, quantities::Value, quantities::of_digits,
+    quantities::value_of;
 using Source = const Measurement&;
-using Rows = std::vector<quantities::QuantityRow<Measurement>>;
+using Rows = std::vector<QuantityRow<Measurement>>;
 
-quantities::Value vector_of(const std::array<double, 3>& axes) {
+Value vector_of(const std::array<double, 3>& axes) {
   return std::vector<double>(axes.begin(), axes.end());
 }
 
-quantities::Value vector_of(const Vec3& axes) {
+Value vector_of(const Vec3& axes) {
   return std::vector<double>{axes.x(), axes.y(), axes.z()};
 }
 
 Rows state_rows() {
   return {
-      {{"snapshots", quantities::unit::none, "snapshots", "number of snapshots averaged over"},
-       [](Source m) -> quantities::Value { return m.analysis.snapshots; }},
-      {{"time", quantities::unit::orbits, "time of the last", "time of the last snapshot since the run began"},
-       [](Source m) -> quantities::Value { return m.analysis.time_orbits; }},
-      {{"particle_count", quantities::unit::none, "particles", "N"},
-       [](Source m) -> quantities::Value { return m.analysis.particle_count; }},
-      {{"mean_radius", quantities::unit::metres, "mean radius r", "plain mean of the radii: the r of r Ω"},
-       [](Source m) -> quantities::Value { return m.analysis.mean_radius_m; }},
-      {{"optical_depth", quantities::unit::none, "optical depth", "geometric: Σ π r² over the area"},
-       [](Source m) -> quantities::Value { return m.analysis.optical_depth; }},
-      {{"surface_density", quantities::unit::surface_density, "surface density", "Σ m over the area"},
-       [](Source m) -> quantities::Value { return m.analysis.surface_density_kg_m2; }},
-      {{"critical_wavelength", quantities::unit::metres, "critical wavelength", "λ_cr = 4π² G Σ/κ² (Toomre 1964)"},
-       [](Source m) -> quantities::Value { return m.analysis.critical_wavelength_m; }},
-      {{"toomre_q", quantities::unit::none, "Toomre Q", "κ c_x/(3.36 G Σ), with c_x of the whole patch (Toomre 1964)"},
-       [](Source m) -> quantities::Value { return m.analysis.toomre_q; }},
-      {{"gravity_parameter", quantities::unit::none, "gravity parameter",
+      {{"snapshots", unit::none, "snapshots", "number of snapshots averaged over"},
+       [](Source m) { return m.analysis.snapshots; }},
+      {{"time", unit::orbits, "time of the last", "time of the last snapshot since the run began"},
+       [](Source m) { return m.analysis.time_orbits; }},
+      {{"particle_count", unit::none, "particles", "N"}, [](Source m) { return m.analysis.particle_count; }},
+      {{"mean_radius", unit::metres, "mean radius r", "plain mean of the radii: the r of r Ω"},
+       [](Source m) { return m.analysis.mean_radius_m; }},
+      {{"optical_depth", unit::none, "optical depth", "geometric: Σ π r² over the area"},
+       [](Source m) { return m.analysis.optical_depth; }},
+      {{"surface_density", unit::surface_density, "surface density", "Σ m over the area"},
+       [](Source m) { return m.analysis.surface_density_kg_m2; }},
+      {{"critical_wavelength", unit::metres, "critical wavelength", "λ_cr = 4π² G Σ/κ² (Toomre 1964)"},
+       [](Source m) { return m.analysis.critical_wavelength_m; }},
+      {{"toomre_q", unit::none, "Toomre Q", "κ c_x/(3.36 G Σ), with c_x of the whole patch (Toomre 1964)"},
+       [](Source m) { return m.analysis.toomre_q; }},
+      {{"gravity_parameter", unit::none, "gravity parameter",
         "(G Σ/(r Ω²))²: the unit of viscosity by self-gravity, G²Σ²/Ω³, over that by contacts, r²Ω (Daisaka, Tanaka & "
-        "Ida "
-        "2001, Icarus 154, 296)"},
-       [](Source m) -> quantities::Value {
+        "Ida 2001, Icarus 154, 296)"},
+       [](Source m) {
          return m.units.viscosity(quantities::UnitSystem::gravity) / m.units.viscosity(quantities::UnitSystem::radius);
        }},
-      {of_shape({"dispersion", quantities::unit::metres_per_second, "velocity dispersion",
+      {of_shape({"dispersion", unit::metres_per_second, "velocity dispersion",
                  "c_x, c_y, c_z: standard deviation of the velocity beyond the shear, streams of wakes included",
-                 quantities::Spread::none, quantities::Forms::si_and_radius},
-                quantities::Shape::vector),
+                 Spread::none, Forms::si_and_radius},
+                Shape::vector),
        [](Source m) { return vector_of(m.analysis.dispersion_m_s); }},
-      {{"scale_height", quantities::unit::metres, "scale height", "√⟨z²⟩"},
-       [](Source m) -> quantities::Value { return m.analysis.scale_height_m; }},
-      {{"mean_eccentricity", quantities::unit::metres, "", "mean amplitude of the epicycles along the radius"},
-       [](Source m) -> quantities::Value { return m.mean_over_snapshots(diagnostics::mean_eccentricity); }},
-      {{"mean_inclination", quantities::unit::metres, "", "mean amplitude of the vertical oscillations"},
-       [](Source m) -> quantities::Value { return m.mean_over_snapshots(diagnostics::mean_inclination); }},
-      {{"filling_factor", quantities::unit::none, "filling factor", "fraction of the plane z = 0 inside particles"},
-       [](Source m) -> quantities::Value { return m.mean_over_snapshots(diagnostics::midplane_filling); }},
-      {{"random_energy", quantities::unit::specific_energy, "", "⟨½κ²e² + ½ν²i²⟩ per mass, which free epicycles keep"},
-       [](Source m) -> quantities::Value { return m.analysis.random_energy_m2_s2; }},
-      {{"largest_overlap", quantities::unit::unnamed("of a radius sum"), "largest overlap",
-        "largest (r₁ + r₂ − distance)/(r₁ + r₂) of any pair in any of the snapshots; 0: none", quantities::Spread::none,
-        quantities::Forms::si, 2},
-       [](Source m) -> quantities::Value { return m.largest_overlap; }}};
+      {{"scale_height", unit::metres, "scale height", "√⟨z²⟩"}, [](Source m) { return m.analysis.scale_height_m; }},
+      {{"mean_eccentricity", unit::metres, "", "mean amplitude of the epicycles along the radius"},
+       [](Source m) { return m.mean_over_snapshots(diagnostics::mean_eccentricity); }},
+      {{"mean_inclination", unit::metres, "", "mean amplitude of the vertical oscillations"},
+       [](Source m) { return m.mean_over_snapshots(diagnostics::mean_inclination); }},
+      {{"filling_factor", unit::none, "filling factor", "fraction of the plane z = 0 inside particles"},
+       [](Source m) { return m.mean_over_snapshots(diagnostics::midplane_filling); }},
+      {{"random_energy", unit::specific_energy, "", "⟨½κ²e² + ½ν²i²⟩ per mass, which free epicycles keep"},
+       [](Source m) { return m.analysis.random_energy_m2_s2; }},
+      {of_digits(2, {"largest_overlap", unit::unnamed("of a radius sum"), "largest overlap",
+                     "largest (r₁ + r₂ − distance)/(r₁ + r₂) of any pair in any of the snapshots; 0: none"}),
+       [](Source m) { return m.largest_overlap; }}};
 }
 
 std::string why_no_wakes(const diagnostics::Analysis& a) {
@@ -80,81 +80,72 @@ std::string why_no_wakes(const diagnostics::Analysis& a) {
 
 Rows wake_rows() {
   return {
-      {{"wake_pitch", quantities::unit::degrees, "wakes: pitch",
-        "angle from the orbit to the central ridge of the autocorrelation out to one λ_cr; positive: trailing",
-        quantities::Spread::none, quantities::Forms::si, 3},
-       [](Source m) { return quantities::value_of(m.analysis.wake_pitch_degrees, why_no_wakes(m.analysis)); }},
-      {{"wake_spacing", quantities::unit::metres, "wakes: radial spacing",
-        "radial distance to the first side maximum of the mean autocorrelation", quantities::Spread::none,
-        quantities::Forms::si, 3},
+      {of_digits(
+           3, {"wake_pitch", unit::degrees, "wakes: pitch",
+               "angle from the orbit to the central ridge of the autocorrelation out to one λ_cr; positive: trailing"}),
+       [](Source m) { return value_of(m.analysis.wake_pitch_degrees, why_no_wakes(m.analysis)); }},
+      {of_digits(3, {"wake_spacing", unit::metres, "wakes: radial spacing",
+                     "radial distance to the first side maximum of the mean autocorrelation"}),
        [](Source m) {
-         return quantities::value_of(m.analysis.wake_spacing_m,
-                                     m.analysis.wake_pitch_degrees
-                                         ? "no second wake exceeds the noise within half a box"
-                                         : why_no_wakes(m.analysis));
+         return value_of(m.analysis.wake_spacing_m, m.analysis.wake_pitch_degrees
+                                                        ? "no second wake exceeds the noise within half a box"
+                                                        : why_no_wakes(m.analysis));
        }},
-      {{"wake_amplitude", quantities::unit::none, "wakes: amplitude",
-        "how far the ridge of the autocorrelation stands out", quantities::Spread::none, quantities::Forms::si, 3},
-       [](Source m) -> quantities::Value { return m.analysis.wake_amplitude; }},
-      {{"wake_wavelength", quantities::unit::metres, "wakes: wavelength",
-        "λ_⊥ = 2π Σ P/Σ P k of the power spectrum P of the surface density, smoothed by λ_cr/8; null without wakes",
-        quantities::Spread::scatter, quantities::Forms::si, 3},
-       [](Source m) { return quantities::value_of(m.analysis.wakes.wavelength, why_no_wakes(m.analysis)); }},
-      {{"wake_radial_wavelength", quantities::unit::metres, "wakes: radial wavelength",
-        "λ_x = 2π Σ P/Σ P k_x, k_x counted as positive", quantities::Spread::scatter, quantities::Forms::si, 3},
-       [](Source m) { return quantities::value_of(m.analysis.wakes.radial_wavelength, why_no_wakes(m.analysis)); }},
-      {{"wake_angle", quantities::unit::degrees, "wakes: angle", "from the orbit to the wakes by the power spectrum",
-        quantities::Spread::scatter, quantities::Forms::si, 3},
-       [](Source m) { return quantities::value_of(m.analysis.wakes.angle_degrees, why_no_wakes(m.analysis)); }},
-      {{"wake_inner_pitch", quantities::unit::degrees, "wakes: inner pitch",
-        "of the ridge within λ_cr/2 (after Michikoshi et al. 2015, ApJ 812, 151)", quantities::Spread::scatter,
-        quantities::Forms::si, 3},
-       [](Source m) { return quantities::value_of(m.analysis.wakes.inner_pitch_degrees, why_no_wakes(m.analysis)); }},
-      {{"wake_outer_pitch", quantities::unit::degrees, "wakes: outer pitch", "of the ridge from λ_cr/2 to 3/2 λ_cr",
-        quantities::Spread::scatter, quantities::Forms::si, 3},
-       [](Source m) { return quantities::value_of(m.analysis.wakes.outer_pitch_degrees); }},
-      {{"wake_contrast", quantities::unit::none, "wakes: contrast",
-        "rms of the smoothed Σ/⟨Σ⟩ − 1, without shot noise"},
-       [](Source m) -> quantities::Value { return m.analysis.wakes.contrast; }}};
+      {of_digits(3, {"wake_amplitude", unit::none, "wakes: amplitude",
+                     "how far the ridge of the autocorrelation stands out"}),
+       [](Source m) { return m.analysis.wake_amplitude; }},
+      {of_digits(
+           3,
+           {"wake_wavelength", unit::metres, "wakes: wavelength",
+            "λ_⊥ = 2π Σ P/Σ P k of the power spectrum P of the surface density, smoothed by λ_cr/8; null without wakes",
+            Spread::scatter}),
+       [](Source m) { return value_of(m.analysis.wakes.wavelength, why_no_wakes(m.analysis)); }},
+      {of_digits(3, {"wake_radial_wavelength", unit::metres, "wakes: radial wavelength",
+                     "λ_x = 2π Σ P/Σ P k_x, k_x counted as positive", Spread::scatter}),
+       [](Source m) { return value_of(m.analysis.wakes.radial_wavelength, why_no_wakes(m.analysis)); }},
+      {of_digits(3, {"wake_angle", unit::degrees, "wakes: angle", "from the orbit to the wakes by the power spectrum",
+                     Spread::scatter}),
+       [](Source m) { return value_of(m.analysis.wakes.angle_degrees, why_no_wakes(m.analysis)); }},
+      {of_digits(3, {"wake_inner_pitch", unit::degrees, "wakes: inner pitch",
+                     "of the ridge within λ_cr/2 (after Michikoshi et al. 2015, ApJ 812, 151)", Spread::scatter}),
+       [](Source m) { return value_of(m.analysis.wakes.inner_pitch_degrees, why_no_wakes(m.analysis)); }},
+      {of_digits(3, {"wake_outer_pitch", unit::degrees, "wakes: outer pitch", "of the ridge from λ_cr/2 to 3/2 λ_cr",
+                     Spread::scatter}),
+       [](Source m) { return value_of(m.analysis.wakes.outer_pitch_degrees); }},
+      {{"wake_contrast", unit::none, "wakes: contrast", "rms of the smoothed Σ/⟨Σ⟩ − 1, without shot noise"},
+       [](Source m) { return m.analysis.wakes.contrast; }}};
 }
 
 // Returns a number of the waves; unknown if there are too few particles.
-quantities::Value of_waves(Source m, quantities::Value (*number)(const diagnostics::WaveAnalysis&)) {
-  return m.analysis.waves ? number(*m.analysis.waves) : quantities::Unknown{"these particles are too few"};
+Value of_waves(Source m, const std::function<Value(const diagnostics::WaveAnalysis&)>& number) {
+  return m.analysis.waves ? number(*m.analysis.waves) : Unknown{"these particles are too few"};
 }
 
 Rows wave_rows() {
-  return {
-      {{"epicyclic_wave_fraction", quantities::unit::none, "box-long waves: energy",
-        "fraction of the epicyclic energy in axisymmetric waves as long as the box (modes 1 to 4)"},
-       [](Source m) {
-         return of_waves(m, [](const diagnostics::WaveAnalysis& w) -> quantities::Value { return w.energy_fraction; });
-       }},
-      {of_shape({"dispersion_without_waves", quantities::unit::metres_per_second, "dispersion without them",
-                 "about the velocity field of these waves", quantities::Spread::none, quantities::Forms::si_and_radius},
-                quantities::Shape::vector),
-       [](Source m) {
-         return of_waves(m, [](const diagnostics::WaveAnalysis& w) { return vector_of(w.dispersion_m_s); });
-       }},
-      {{"toomre_q_without_waves", quantities::unit::none, "Toomre Q without them",
-        "κ c_x/(3.36 G Σ) by the dispersion without these waves"},
-       [](Source m) {
-         return of_waves(m, [](const diagnostics::WaveAnalysis& w) -> quantities::Value { return w.toomre_q; });
-       }}};
+  return {{{"epicyclic_wave_fraction", unit::none, "box-long waves: energy",
+            "fraction of the epicyclic energy in axisymmetric waves as long as the box (modes 1 to 4)"},
+           [](Source m) { return of_waves(m, [](const diagnostics::WaveAnalysis& w) { return w.energy_fraction; }); }},
+          {of_shape({"dispersion_without_waves", unit::metres_per_second, "dispersion without them",
+                     "about the velocity field of these waves", Spread::none, Forms::si_and_radius},
+                    Shape::vector),
+           [](Source m) {
+             return of_waves(m, [](const diagnostics::WaveAnalysis& w) { return vector_of(w.dispersion_m_s); });
+           }},
+          {{"toomre_q_without_waves", unit::none, "Toomre Q without them",
+            "κ c_x/(3.36 G Σ) by the dispersion without these waves"},
+           [](Source m) { return of_waves(m, [](const diagnostics::WaveAnalysis& w) { return w.toomre_q; }); }}};
 }
 
-std::vector<quantities::Record> size_classes_of(Source m) {
+std::vector<Record> size_classes_of(Source m) {
   using Class = const diagnostics::SizeClass&;
-  static const std::vector<quantities::QuantityRow<diagnostics::SizeClass>> rows = {
-      {{"smallest", quantities::unit::metres, "from"}, [](Class c) -> quantities::Value { return c.smallest; }},
-      {{"largest", quantities::unit::metres, "to"}, [](Class c) -> quantities::Value { return c.largest; }},
-      {{"count", quantities::unit::none, "particles"}, [](Class c) -> quantities::Value { return c.count; }},
-      {{"mass_share", quantities::unit::none, ""}, [](Class c) -> quantities::Value { return c.mass_fraction; }},
-      {{"dispersion", quantities::unit::metres_per_second, "dispersion"},
-       [](Class c) { return vector_of(c.dispersion); }},
-      {{"scale_height", quantities::unit::metres, "scale height"},
-       [](Class c) -> quantities::Value { return c.scale_height; }}};
-  std::vector<quantities::Record> classes;
+  static const std::vector<QuantityRow<diagnostics::SizeClass>> rows = {
+      {{"smallest", unit::metres, "from"}, [](Class c) { return c.smallest; }},
+      {{"largest", unit::metres, "to"}, [](Class c) { return c.largest; }},
+      {{"count", unit::none, "particles"}, [](Class c) { return c.count; }},
+      {{"mass_share", unit::none, ""}, [](Class c) { return c.mass_fraction; }},
+      {{"dispersion", unit::metres_per_second, "dispersion"}, [](Class c) { return vector_of(c.dispersion); }},
+      {{"scale_height", unit::metres, "scale height"}, [](Class c) { return c.scale_height; }}};
+  std::vector<Record> classes;
   for (const diagnostics::SizeClass& c : m.analysis.size_classes)
     classes.push_back({entries_of(rows, c), m.units});
   return classes;
@@ -162,44 +153,42 @@ std::vector<quantities::Record> size_classes_of(Source m) {
 
 Rows local_rows() {
   return {
-      {{"local_radius", quantities::unit::metres, "local: within",
+      {{"local_radius", unit::metres, "local: within",
         "radius of the neighbourhood whose mean velocity is subtracted: the larger of 3 r and λ_cr/20"},
-       [](Source m) -> quantities::Value { return m.analysis.local.radius_m; }},
-      {of_shape({"local_dispersion", quantities::unit::metres_per_second, "local: dispersion",
+       [](Source m) { return m.analysis.local.radius_m; }},
+      {of_shape({"local_dispersion", unit::metres_per_second, "local: dispersion",
                  "standard deviation of the velocities about the mean of the neighbours"},
-                quantities::Shape::vector),
+                Shape::vector),
        [](Source m) { return vector_of(m.analysis.local.dispersion_m_s); }},
-      {{"local_toomre_q", quantities::unit::none, "local: Toomre Q", "by the local c_x and the mean Σ of the patch"},
-       [](Source m) -> quantities::Value { return m.analysis.local.toomre_q; }},
-      {{"local_share", quantities::unit::none, "", "mass fraction of the particles that have a neighbour"},
-       [](Source m) -> quantities::Value { return m.analysis.local.fraction; }},
-      {{"crowding_radius", quantities::unit::metres, "mean over particles: within",
+      {{"local_toomre_q", unit::none, "local: Toomre Q", "by the local c_x and the mean Σ of the patch"},
+       [](Source m) { return m.analysis.local.toomre_q; }},
+      {{"local_share", unit::none, "", "mass fraction of the particles that have a neighbour"},
+       [](Source m) { return m.analysis.local.fraction; }},
+      {{"crowding_radius", unit::metres, "mean over particles: within",
         "radius of the disc about each particle in which density is counted: the larger of 6 r and λ_cr/10"},
-       [](Source m) -> quantities::Value { return m.analysis.local.crowding_radius_m; }},
-      {{"crowding_optical_depth", quantities::unit::none, "mean over particles: optical depth",
+       [](Source m) { return m.analysis.local.crowding_radius_m; }},
+      {{"crowding_optical_depth", unit::none, "mean over particles: optical depth",
         "of the other particles within that disc"},
-       [](Source m) -> quantities::Value { return m.analysis.local.optical_depth; }},
-      {{"crowding_filling_factor", quantities::unit::none, "mean over particles: filling factor",
+       [](Source m) { return m.analysis.local.optical_depth; }},
+      {{"crowding_filling_factor", unit::none, "mean over particles: filling factor",
         "of the other particles there at z = 0"},
-       [](Source m) -> quantities::Value { return m.analysis.local.filling_factor; }},
-      {{"thin_area_share", quantities::unit::none, "thin area (τ < 0.1)",
-        "fraction of cells with an optical depth below 0.1"},
-       [](Source m) -> quantities::Value { return m.analysis.local.thin_area_fraction; }},
-      {{"thin_cell", quantities::unit::metres, "", "side of these cells"},
-       [](Source m) -> quantities::Value { return m.analysis.local.thin_cell_m; }},
-      {of_shape({"velocity_axis_ratios", quantities::unit::none, "velocity ellipsoid: ratios",
+       [](Source m) { return m.analysis.local.filling_factor; }},
+      {{"thin_area_share", unit::none, "thin area (τ < 0.1)", "fraction of cells with an optical depth below 0.1"},
+       [](Source m) { return m.analysis.local.thin_area_fraction; }},
+      {{"thin_cell", unit::metres, "", "side of these cells"}, [](Source m) { return m.analysis.local.thin_cell_m; }},
+      {of_shape({"velocity_axis_ratios", unit::none, "velocity ellipsoid: ratios",
                  "c₂/c₁ and c_z/c₁ of the principal axes of the velocity ellipsoid"},
-                quantities::Shape::other),
-       [](Source m) -> quantities::Value {
+                Shape::other),
+       [](Source m) {
          return std::vector{m.analysis.ellipsoid.second_ratio, m.analysis.ellipsoid.vertical_ratio};
        }},
-      {{"vertex_deviation", quantities::unit::degrees, "velocity ellipsoid: deviation",
+      {{"vertex_deviation", unit::degrees, "velocity ellipsoid: deviation",
         "angle from the radius to its longest axis, positive towards the orbital motion"},
-       [](Source m) -> quantities::Value { return m.analysis.ellipsoid.vertex_deviation_degrees; }},
-      {of_shape({"size_classes", quantities::unit::none, "radii",
+       [](Source m) { return m.analysis.ellipsoid.vertex_deviation_degrees; }},
+      {of_shape({"size_classes", unit::none, "radii",
                  "`count`, `mass_share`, `dispersion_m_s`, `scale_height_m` of radii from `smallest_m` to `largest_m`"},
-                quantities::Shape::other),
-       [](Source m) -> quantities::Value { return size_classes_of(m); }}};
+                Shape::other),
+       [](Source m) { return size_classes_of(m); }}};
 }
 
 bool has_spins(Source m) {
@@ -207,82 +196,72 @@ bool has_spins(Source m) {
 }
 
 Rows spin_rows() {
-  return {{of_shape({"mean_spin", quantities::unit::omega, "spins: mean",
-                     "mean angular velocity against the stars; only with friction"},
-                    quantities::Shape::vector),
+  return {{of_shape(
+               {"mean_spin", unit::omega, "spins: mean", "mean angular velocity against the stars; only with friction"},
+               Shape::vector),
            [](Source m) { return vector_of(m.analysis.spins->mean_omega); }, has_spins},
-          {{"spin_dispersion", quantities::unit::omega, "spins: dispersion", "√⟨(ω − ⟨ω⟩)²⟩; only with friction"},
-           [](Source m) -> quantities::Value { return m.analysis.spins->dispersion_omega; },
+          {{"spin_dispersion", unit::omega, "spins: dispersion", "√⟨(ω − ⟨ω⟩)²⟩; only with friction"},
+           [](Source m) { return m.analysis.spins->dispersion_omega; },
            has_spins},
-          {{"spin_energy_ratio", quantities::unit::none, "spins: energy ratio",
+          {{"spin_energy_ratio", unit::none, "spins: energy ratio",
             "energy of the spins about their mean over that of the random motion; only with friction"},
-           [](Source m) -> quantities::Value { return m.analysis.spins->energy_ratio; },
+           [](Source m) { return m.analysis.spins->energy_ratio; },
            has_spins}};
 }
 
-std::vector<quantities::Record> spectrum_of(Source m) {
+std::vector<Record> spectrum_of(Source m) {
   using Class = diagnostics::ClusterAnalysis::Class;
-  static const std::vector<quantities::QuantityRow<Class>> rows = {
-      {{"least_members"}, [](const Class& c) -> quantities::Value { return c.min_members; }},
-      {{"count"}, [](const Class& c) -> quantities::Value { return c.count; }},
-      {{"mass_share"}, [](const Class& c) -> quantities::Value { return c.mass_fraction; }}};
-  std::vector<quantities::Record> classes;
+  static const std::vector<QuantityRow<Class>> rows = {
+      {{"least_members"}, [](const Class& c) { return c.min_members; }},
+      {{"count"}, [](const Class& c) { return c.count; }},
+      {{"mass_share"}, [](const Class& c) { return c.mass_fraction; }}};
+  std::vector<Record> classes;
   for (const Class& c : m.analysis.clusters.spectrum)
     classes.push_back({entries_of(rows, c), m.units});
   return classes;
 }
 
 Rows cluster_rows() {
-  return {
-      {{"clusters.gap", quantities::unit::none, "",
-        "largest gap between friends, over the sum of their radii (friends of friends)"},
-       [](Source m) -> quantities::Value { return m.analysis.clusters.gap; }},
-      {{"clusters.count", quantities::unit::none, "clusters", "clusters of two or more touching spheres, per snapshot",
-        quantities::Spread::none, quantities::Forms::si, 3},
-       [](Source m) -> quantities::Value { return m.analysis.clusters.count; }},
-      {{"clusters.mass_share", quantities::unit::unnamed("of the mass"), "clusters: all",
-        "fraction of all mass in them"},
-       [](Source m) -> quantities::Value { return m.analysis.clusters.mass_fraction; }},
-      {{"clusters.largest_mass_share", quantities::unit::unnamed("of the mass"), "clusters: the heaviest",
-        "fraction of all mass in the heaviest one"},
-       [](Source m) -> quantities::Value { return m.analysis.clusters.largest_mass_fraction; }},
-      {of_shape({"clusters.largest_half_axes", quantities::unit::metres, "clusters: its half axes",
-                 "half axes of the homogeneous ellipsoid with the moments of inertia of the heaviest one"},
-                quantities::Shape::vector),
-       [](Source m) -> quantities::Value {
-         const auto& axes = m.analysis.clusters.largest_half_axes;
-         return axes ? vector_of(*axes)
-                     : quantities::Unknown{m.analysis.clusters.count > 0.0 ? "it is unbounded in the periodic box"
-                                                                           : "there are none"};
-       }},
-      {{"clusters.spin", quantities::unit::omega, "clusters: spin",
-        "1 + L_z/I_z, seen from the stars; mean over their mass"},
-       [](Source m) { return quantities::value_of(m.analysis.clusters.spin); }},
-      {of_shape({"clusters.spectrum", quantities::unit::none, "",
-                 "`count` and `mass_share` of clusters of `least_members` to twice as many"},
-                quantities::Shape::other),
-       [](Source m) -> quantities::Value { return spectrum_of(m); }}};
+  return {{{"clusters.gap", unit::none, "",
+            "largest gap between friends, over the sum of their radii (friends of friends)"},
+           [](Source m) { return m.analysis.clusters.gap; }},
+          {of_digits(
+               3, {"clusters.count", unit::none, "clusters", "clusters of two or more touching spheres, per snapshot"}),
+           [](Source m) { return m.analysis.clusters.count; }},
+          {{"clusters.mass_share", unit::unnamed("of the mass"), "clusters: all", "fraction of all mass in them"},
+           [](Source m) { return m.analysis.clusters.mass_fraction; }},
+          {{"clusters.largest_mass_share", unit::unnamed("of the mass"), "clusters: the heaviest",
+            "fraction of all mass in the heaviest one"},
+           [](Source m) { return m.analysis.clusters.largest_mass_fraction; }},
+          {of_shape({"clusters.largest_half_axes", unit::metres, "clusters: its half axes",
+                     "half axes of the homogeneous ellipsoid with the moments of inertia of the heaviest one"},
+                    Shape::vector),
+           [](Source m) -> Value {
+             const auto& axes = m.analysis.clusters.largest_half_axes;
+             return axes ? vector_of(*axes)
+                         : Unknown{m.analysis.clusters.count > 0.0 ? "it is unbounded in the periodic box"
+                                                                   : "there are none"};
+           }},
+          {{"clusters.spin", unit::omega, "clusters: spin", "1 + L_z/I_z, seen from the stars; mean over their mass"},
+           [](Source m) { return value_of(m.analysis.clusters.spin); }},
+          {of_shape({"clusters.spectrum", unit::none, "",
+                     "`count` and `mass_share` of clusters of `least_members` to twice as many"},
+                    Shape::other),
+           [](Source m) { return spectrum_of(m); }}};
 }
 
-std::vector<quantities::Record> radial_modes_of(Source m) {
+std::vector<Record> radial_modes_of(Source m) {
   using Mode = const diagnostics::RadialModeAnalysis&;
-  static const std::vector<quantities::QuantityRow<diagnostics::RadialModeAnalysis>> rows = {
-      {{"n", quantities::unit::none, "n"},
-       [](Mode mode) -> quantities::Value { return static_cast<std::uint64_t>(mode.n); }},
-      {{"wavelength", quantities::unit::metres, "wavelength"},
-       [](Mode mode) -> quantities::Value { return mode.wavelength; }},
-      {{"density_amplitude", quantities::unit::none, "amplitude"},
-       [](Mode mode) -> quantities::Value { return mode.density_amplitude; }},
-      {{"density_phase", quantities::unit::degrees},
-       [](Mode mode) -> quantities::Value { return mode.density_phase_degrees; }},
-      {{"speed", quantities::unit::metres_per_second, "speed"},
-       [](Mode mode) -> quantities::Value { return mode.speed; }},
-      {{"growth_rate", quantities::unit::omega, "growth", "", quantities::Spread::error, quantities::Forms::si, 3},
-       [](Mode mode) -> quantities::Value {
-         return mode.growth ? quantities::Value(quantities::Uncertain{mode.growth->rate, mode.growth->error})
-                            : quantities::Value(quantities::Unknown{});
+  static const std::vector<QuantityRow<diagnostics::RadialModeAnalysis>> rows = {
+      {{"n", unit::none, "n"}, [](Mode mode) { return static_cast<std::uint64_t>(mode.n); }},
+      {{"wavelength", unit::metres, "wavelength"}, [](Mode mode) { return mode.wavelength; }},
+      {{"density_amplitude", unit::none, "amplitude"}, [](Mode mode) { return mode.density_amplitude; }},
+      {{"density_phase", unit::degrees}, [](Mode mode) { return mode.density_phase_degrees; }},
+      {{"speed", unit::metres_per_second, "speed"}, [](Mode mode) { return mode.speed; }},
+      {of_digits(3, {"growth_rate", unit::omega, "growth", "", Spread::error}), [](Mode mode) {
+         return mode.growth ? Value(Uncertain{mode.growth->rate, mode.growth->error}) : Value(Unknown{});
        }}};
-  std::vector<quantities::Record> modes;
+  std::vector<Record> modes;
   for (const diagnostics::RadialModeAnalysis& mode : m.analysis.radial_modes)
     modes.push_back({entries_of(rows, mode), m.units});
   return modes;
@@ -290,16 +269,15 @@ std::vector<quantities::Record> radial_modes_of(Source m) {
 
 Rows mode_rows() {
   return {
-      {{"radial_mode_noise", quantities::unit::none, "radial modes: noise",
-        "rms density amplitude of a mode of particles at random: 2 √(Σm²)/Σm", quantities::Spread::none,
-        quantities::Forms::si, 2},
-       [](Source m) -> quantities::Value { return m.analysis.radial_mode_noise; }},
+      {of_digits(2, {"radial_mode_noise", unit::none, "radial modes: noise",
+                     "rms density amplitude of a mode of particles at random: 2 √(Σm²)/Σm"}),
+       [](Source m) { return m.analysis.radial_mode_noise; }},
       {of_shape(
-           {"radial_modes", quantities::unit::none, "radial mode",
+           {"radial_modes", unit::none, "radial mode",
             "waves along the radius: `n`, `wavelength_m`, `density_amplitude`, `density_phase_degrees`, `speed_m_s`, "
             "`growth_rate_omega`, `growth_rate_error_omega`"},
-           quantities::Shape::other),
-       [](Source m) -> quantities::Value { return radial_modes_of(m); }}};
+           Shape::other),
+       [](Source m) { return radial_modes_of(m); }}};
 }
 
 const Rows& all_rows() {
@@ -317,19 +295,19 @@ Registry<OwnQuantity>& registered_quantities() {
   return quantities;
 }
 
-quantities::Quantity quantity_of(const OwnQuantity& own) {
-  return {own.name, quantities::unit::unnamed(own.unit), own.label, own.meaning};
+Quantity quantity_of(const OwnQuantity& own) {
+  return {own.name, unit::unnamed(own.unit), own.label, own.meaning};
 }
 
 std::vector<quantities::Entry> own_entries(Source m) {
   std::vector<quantities::Entry> entries;
   for (const OwnQuantity& own : registered_quantities().entries())
-    entries.push_back({quantity_of(own), quantities::value_of(std::optional(m.mean_over_snapshots(own.value)))});
+    entries.push_back({quantity_of(own), value_of(std::optional(m.mean_over_snapshots(own.value)))});
   return entries;
 }
 
-std::vector<quantities::Quantity> own_quantities() {
-  std::vector<quantities::Quantity> all;
+std::vector<Quantity> own_quantities() {
+  std::vector<Quantity> all;
   for (const OwnQuantity& own : registered_quantities().entries())
     all.push_back(quantity_of(own));
   return all;
@@ -370,7 +348,7 @@ Measurement measure(std::span<const Patch> patches, const TransportReport& trans
   return m;
 }
 
-quantities::Record wakes_of(std::span<const Patch> patches) {
+Record wakes_of(std::span<const Patch> patches) {
   assert(!patches.empty());
   static const Rows rows = wake_rows();
   Measurement m;
@@ -379,13 +357,13 @@ quantities::Record wakes_of(std::span<const Patch> patches) {
   return {entries_of(rows, m), units_of(patches.back())};
 }
 
-quantities::Record record_of(const Measurement& measurement) {
-  const quantities::Record transport = record_of(measurement.transport, measurement.units);
+Record record_of(const Measurement& measurement) {
+  const Record transport = record_of(measurement.transport, measurement.units);
   return {joined(joined(entries_of(all_rows(), measurement), transport.entries), own_entries(measurement)),
           measurement.units};
 }
 
-std::vector<quantities::Quantity> measured_quantities() {
+std::vector<Quantity> measured_quantities() {
   return joined(joined(quantities_of(all_rows()), transport_quantities()), own_quantities());
 }
 

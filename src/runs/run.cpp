@@ -17,6 +17,7 @@
 #include <keeler/io/checkpoint.hpp>
 #include <keeler/io/checkpoint_folder.hpp>
 #include <keeler/runs/folder_lock.hpp>
+#include <keeler/runs/patch_units.hpp>
 #include <keeler/runs/state_hash.hpp>
 #include <keeler/scene/load.hpp>
 #include <keeler/scene/load_parts.hpp>
@@ -301,7 +302,13 @@ RunResult resume(const RunOptions& options, RunRequests& requests) {
                                  "{:.6g} continues it",
                                  options.folder.string(), static_cast<double>(step) * scene.time.step));
     RunResult result{true, step, state_hash(loaded.run.state, scene, ranks), resume_command(options)};
-    ranks.on_root([&] { result.summary = read_summary(options.folder); });
+    const simulation::SimulationState& state = loaded.run.state;
+    const quantities::PatchUnits units =
+        units_of(state.particles, state.box.area(), scene.planet.orbital_frequency, ranks);
+    ranks.on_root([&] {
+      result.summary = read_summary(options.folder);
+      result.summary.units = units;
+    });
     return result;
   }
   Simulation simulation(scene, std::move(loaded.run.state), ranks);

@@ -19,88 +19,75 @@ Estimate at_an_instant(double value) {
   return {value, std::numeric_limits<double>::quiet_NaN()};
 }
 
+namespace unit = quantities::unit;
+using quantities::Forms, quantities::Quantity, quantities::QuantityRow, quantities::Record, quantities::Spread,
+    quantities::Unknown, quantities::Value, quantities::of_digits, quantities::value_of, quantities::yes_or_no;
 using Report = const TransportReport&;
 using Maybe = std::optional<Estimate>;
 
 // Returns a number of the transport; unknown if the series has too few rows.
-quantities::Value of_transport(Report r, quantities::Value (*number)(const Transport&)) {
+Value of_transport(Report r, const std::function<Value(const Transport&)>& number) {
   return r.transport() ? number(*r.transport())
-                       : quantities::Unknown{"series.csv has fewer than three rows with all stresses here"};
+                       : Unknown{"series.csv has fewer than three rows with all stresses here"};
 }
 
 // As above, for numbers that a single snapshot does not have.
-quantities::Value of_run(Report r, quantities::Value (*number)(const Transport&)) {
-  return r.is_of_run() ? of_transport(r, number) : quantities::Unknown{"a single snapshot does not determine it"};
+Value of_run(Report r, const std::function<Value(const Transport&)>& number) {
+  return r.is_of_run() ? of_transport(r, number) : Unknown{"a single snapshot does not determine it"};
 }
 
-quantities::Quantity viscosity(const char* part, const char* label, const char* meaning) {
-  return {fmt::format("{}_viscosity", part), quantities::unit::viscosity, label, meaning,
-          quantities::Spread::error,         quantities::Forms::all};
+Quantity viscosity(const char* part, const char* label, const char* meaning) {
+  return {fmt::format("{}_viscosity", part), unit::viscosity, label, meaning, Spread::error, Forms::all};
 }
 
-std::vector<quantities::QuantityRow<TransportReport>> transport_rows() {
+std::vector<QuantityRow<TransportReport>> transport_rows() {
   return {
       {viscosity("translational", "viscosity: translational",
                  "⟨c_x c_y⟩/S: transport by the motion of particles (local; Wisdom & Tremaine 1988, AJ 95, 925)"),
-       [](Report r) {
-         return of_transport(r, [](const Transport& t) { return quantities::value_of(Maybe(t.translational)); });
-       }},
+       [](Report r) { return of_transport(r, [](const Transport& t) { return value_of(Maybe(t.translational)); }); }},
       {viscosity("collisional", "viscosity: collisional",
                  "Σ (x_j − x_i) (p_y gained by j) per time over M S: transport from centre to centre in contacts "
                  "(nonlocal; Wisdom & Tremaine 1988)"),
-       [](Report r) {
-         return of_run(r, [](const Transport& t) { return quantities::value_of(Maybe(t.collisional)); });
-       }},
+       [](Report r) { return of_run(r, [](const Transport& t) { return value_of(Maybe(t.collisional)); }); }},
       {viscosity("gravitational", "viscosity: gravitational",
                  "(dΦ/dγ)/(M S): transport by self-gravity (Daisaka, Tanaka & Ida 2001, Icarus 154, 296)"),
-       [](Report r) {
-         return of_transport(r, [](const Transport& t) { return quantities::value_of(t.gravitational); });
-       }},
+       [](Report r) { return of_transport(r, [](const Transport& t) { return value_of(t.gravitational); }); }},
       {viscosity("total", "viscosity: total", "the sum of the three, with the error of the sum"),
-       [](Report r) { return of_run(r, [](const Transport& t) { return quantities::value_of(t.total); }); }},
+       [](Report r) { return of_run(r, [](const Transport& t) { return value_of(t.total); }); }},
       {viscosity("loss", "viscosity: from the loss",
                  "(energy lost in collisions + gain of random and potential energy) per time over M S²: must equal "
                  "the total"),
-       [](Report r) { return of_run(r, [](const Transport& t) { return quantities::value_of(Maybe(t.from_loss)); }); }},
-      {{"energy_balance", quantities::unit::none, "energy balance",
+       [](Report r) { return of_run(r, [](const Transport& t) { return value_of(Maybe(t.from_loss)); }); }},
+      {{"energy_balance", unit::none, "energy balance",
         "`loss_viscosity` over `total_viscosity`: 1 within its error; null where another force does work",
-        quantities::Spread::error},
-       [](Report r) { return of_run(r, [](const Transport& t) { return quantities::value_of(t.balance); }); }},
-      {{"since_orbit", quantities::unit::unnamed("orbits"), "viscosities: since", "first orbit of the measured part"},
-       [](Report r) { return of_transport(r, [](const Transport& t) -> quantities::Value { return t.since_orbit; }); }},
-      {{"until_orbit", quantities::unit::unnamed("orbits"), "viscosities: until", "last orbit of the measured part"},
-       [](Report r) { return of_transport(r, [](const Transport& t) -> quantities::Value { return t.until_orbit; }); }},
-      {of_shape({"since_found", quantities::unit::none, "",
-                 "whether its beginning was detected, by Chodera's criterion (2016, J. Chem. Theory Comput. 12, 1799)"},
-                quantities::Shape::other),
-       [](Report r) { return of_transport(r, [](const Transport& t) -> quantities::Value { return t.since_found; }); }},
-      {of_shape({"steady", quantities::unit::none, "viscosities: steady",
-                 "whether loss and dispersion are steady in that part"},
-                quantities::Shape::other),
-       [](Report r) { return of_run(r, [](const Transport& t) -> quantities::Value { return t.steady; }); }},
-      {{"epicyclic_wave_fraction_first_half", quantities::unit::none, "box-long waves: first half",
-        "mean of the series' `epicyclic_wave_fraction` over the first half of that part", quantities::Spread::none,
-        quantities::Forms::si, 2},
+        Spread::error},
+       [](Report r) { return of_run(r, [](const Transport& t) { return value_of(t.balance); }); }},
+      {{"since_orbit", unit::unnamed("orbits"), "viscosities: since", "first orbit of the measured part"},
+       [](Report r) { return of_transport(r, [](const Transport& t) { return t.since_orbit; }); }},
+      {{"until_orbit", unit::unnamed("orbits"), "viscosities: until", "last orbit of the measured part"},
+       [](Report r) { return of_transport(r, [](const Transport& t) { return t.until_orbit; }); }},
+      {yes_or_no("since_found", "",
+                 "whether its beginning was detected, by Chodera's criterion (2016, J. Chem. Theory Comput. 12, 1799)"),
+       [](Report r) { return of_transport(r, [](const Transport& t) { return t.since_found; }); }},
+      {yes_or_no("steady", "viscosities: steady", "whether loss and dispersion are steady in that part"),
+       [](Report r) { return of_run(r, [](const Transport& t) { return t.steady; }); }},
+      {of_digits(2, {"epicyclic_wave_fraction_first_half", unit::none, "box-long waves: first half",
+                     "mean of the series' `epicyclic_wave_fraction` over the first half of that part"}),
        [](Report r) {
-         return of_transport(r, [](const Transport& t) {
-           return t.waves ? quantities::value_of(t.waves->first_half.value) : quantities::Unknown{};
-         });
+         return of_transport(
+             r, [](const Transport& t) { return t.waves ? value_of(t.waves->first_half.value) : Unknown{}; });
        }},
-      {{"epicyclic_wave_fraction_last_half", quantities::unit::none, "box-long waves: last half",
-        "mean of it over the last half", quantities::Spread::none, quantities::Forms::si, 2},
+      {of_digits(2, {"epicyclic_wave_fraction_last_half", unit::none, "box-long waves: last half",
+                     "mean of it over the last half"}),
        [](Report r) {
-         return of_transport(r, [](const Transport& t) {
-           return t.waves ? quantities::value_of(t.waves->last_half.value) : quantities::Unknown{};
-         });
+         return of_transport(
+             r, [](const Transport& t) { return t.waves ? value_of(t.waves->last_half.value) : Unknown{}; });
        }},
-      {of_shape(
-           {"epicyclic_waves_steady", quantities::unit::none, "box-long waves: steady",
-            "whether the two agree within three errors; if not, Q and c_x depend on the age of the run and on its box"},
-           quantities::Shape::other),
+      {yes_or_no(
+           "epicyclic_waves_steady", "box-long waves: steady",
+           "whether the two agree within three errors; if not, Q and c_x depend on the age of the run and on its box"),
        [](Report r) {
-         return of_transport(r, [](const Transport& t) -> quantities::Value {
-           return t.waves ? quantities::Value(t.waves->steady) : quantities::Value(quantities::Unknown{});
-         });
+         return of_transport(r, [](const Transport& t) { return t.waves ? Value(t.waves->steady) : Value(Unknown{}); });
        }}};
 }
 
@@ -155,12 +142,12 @@ TransportReport TransportReport::of_snapshot(const Patch& patch, const std::opti
   return report;
 }
 
-quantities::Record record_of(const TransportReport& transport, const quantities::PatchUnits& units) {
-  static const std::vector<quantities::QuantityRow<TransportReport>> rows = transport_rows();
+Record record_of(const TransportReport& transport, const quantities::PatchUnits& units) {
+  static const std::vector<QuantityRow<TransportReport>> rows = transport_rows();
   return {entries_of(rows, transport), units};
 }
 
-std::vector<quantities::Quantity> transport_quantities() {
+std::vector<Quantity> transport_quantities() {
   return quantities_of(transport_rows());
 }
 

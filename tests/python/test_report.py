@@ -104,6 +104,33 @@ class Report(unittest.TestCase):
         drawn = {name for name in rows[0]} - {"step", "time_orbits"}
         self.assertGreaterEqual(len(curves), len(drawn) - 2)  # two columns share nothing, the fluxes are viscosities
 
+    def test_numbers_of_snapshots(self):
+        """What `keeler analyze` tells of each snapshot of the view by itself may be an axis."""
+        curves = {one["title"]: one["curves"][0]["points"] for one in self.data("series")["snapshots"]}
+        told = [json.loads(keeler("analyze", self.results / f"snap_{k:06d}.hdf", "--json").stdout) for k in (0, 2, 5)]
+        for name in ("scale_height_m", "filling_factor", "optical_depth", "clusters.count"):
+            values = [one["clusters"]["count"] if name == "clusters.count" else one[name] for one in told]
+            self.assertEqual(curves[name], [[one["time_orbits"], value, None] for one, value in zip(told, values)])
+        self.assertEqual([value for _, value, _ in curves["dispersion_z_m_s"]], [one["dispersion_m_s"][2] for one in told])
+        self.assertNotIn("radial_modes", curves)
+
+    def test_units(self):
+        page = self.results.parent / "units.html"
+        self.assertEqual(keeler("report", self.results, "-o", page, "--units", "radius").returncode, 0)
+        plots = {}
+        for units, text in (("si", self.page), ("radius", page.read_text())):
+            data = json.loads(re.search('id="series-data">(.*?)</script>', text, re.S).group(1))
+            plots[units] = {plot["title"]: plot for plot in data["plots"]}
+        last = json.loads(keeler("analyze", self.results / "snap_000005.hdf", "--json").stdout)
+        speed = last["dispersion_m_s"][0] / last["dispersion_r_omega"][0]
+        for title, unit, size in (("Velocity dispersion", "r Ω", speed), ("Viscosity", "r² Ω", speed * last["mean_radius_m"]),
+                                  ("Scale height", "m", 1.0)):
+            self.assertEqual(plots["radius"][title]["unit"], unit)
+            found, si = (np.array(plots[units][title]["curves"][0]["points"], dtype=float)[:, 1] for units in ("radius", "si"))
+            np.testing.assert_allclose(found * size, si, rtol=1e-12)
+        self.assertIn("r² Ω</td>", page.read_text())
+        self.assertNotIn("m²/s</td>", page.read_text())
+
     def test_series_figure(self):
         """The curves of `keeler render --series` are those of the page: places are linear in the numbers."""
         done = keeler("render", self.results, "--series", "--theme", "light")
@@ -222,6 +249,17 @@ class Report(unittest.TestCase):
         for chart in charts:
             self.assertGreater(chart.size["width"], 300)
             self.assertTrue(chart.find_elements(By.TAG_NAME, "canvas"))
+        up, right = (Select(browser.find_element(By.CSS_SELECTOR, f".chosen .{axis}")) for axis in ("up", "right"))
+        self.assertGreater(len(up.options), len(charts) + 30)
+        for y, x in (("snapshots: filling_factor", "Scale height: √⟨z²⟩, m"), ("Scale height: √⟨z²⟩, m", "time, orbits")):
+            up.select_by_visible_text(y)
+            right.select_by_visible_text(x)
+            self.assertTrue(browser.find_elements(By.CSS_SELECTOR, ".any canvas"), (x, y))
+            self.assertEqual(browser.find_element(By.CSS_SELECTOR, ".any .dygraph-xlabel").text, x)
+        browser.execute_script("document.querySelector('.chosen').scrollIntoView()")
+        shot("chosen")
+        up.select_by_visible_text("time, orbits")
+        self.assertIn("no time in common", browser.find_element(By.CSS_SELECTOR, ".any").text)
         browser.execute_script("document.getElementById('measured').scrollIntoView()")
         shot("measured")
         self.assertEqual([line for line in browser.get_log("browser") if line["level"] != "INFO"], [])

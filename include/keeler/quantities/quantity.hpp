@@ -7,6 +7,7 @@
 
 #include <cassert>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -70,8 +71,9 @@ enum class Spread { none, error, scatter };
 /// The systems of units in which JSON and tables give a number by default.
 enum class Forms { si, si_and_radius, all };
 
-/// The shape of a value. `other` (words, lists, several numbers that are not a vector) has no column in tables.
-enum class Shape { number, vector, other };
+/// The shape of a value. `truth` is yes or no. `other` (words, lists, several numbers that are not a vector) has no
+/// column in tables.
+enum class Shape { number, vector, truth, other };
 
 /// A reported number or word: what it is called and what it means.
 struct Quantity {
@@ -100,8 +102,14 @@ struct Quantity {
 /// Returns the quantity with another shape.
 Quantity of_shape(Quantity quantity, Shape shape);
 
-/// Returns a quantity of shape `other`, without unit: a word, a truth value, a list or an object.
+/// Returns the quantity with another number of significant digits in texts.
+Quantity of_digits(int digits, Quantity quantity);
+
+/// Returns a quantity of shape `other`, without unit: a word, a list or an object.
 Quantity word(const std::string& name, const std::string& label, const std::string& meaning);
+
+/// Returns a quantity of shape `truth`.
+Quantity yes_or_no(const std::string& name, const std::string& label, const std::string& meaning);
 
 /// An unknown or missing value, and optionally the reason, as part of a sentence.
 struct Unknown {
@@ -145,9 +153,9 @@ Value value_of(const std::optional<Estimate>& number);
 
 /// A quantity, and the function that computes its value from results.
 template<class Source> struct QuantityRow {
-  Quantity quantity;                        ///< declares the value
-  Value (*value)(const Source&);            ///< computes it
-  bool (*present)(const Source&) = nullptr; ///< null: always
+  Quantity quantity;                         ///< declares the value
+  std::function<Value(const Source&)> value; ///< computes it; a pointer to a member reads that member
+  bool (*present)(const Source&) = nullptr;  ///< null: always
 };
 
 /// Returns the quantities that these results have, and their values.
@@ -155,7 +163,7 @@ template<class Source>
 std::vector<Entry> entries_of(const std::vector<QuantityRow<Source>>& rows, const Source& source) {
   std::vector<Entry> entries;
   for (const QuantityRow<Source>& row : rows) {
-    assert(row.value != nullptr);
+    assert(row.value);
     if (!row.present || row.present(source))
       entries.push_back({row.quantity, row.value(source)});
   }
