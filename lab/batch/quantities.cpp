@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <cassert>
 #include <limits>
-#include <span>
 
 namespace keeler::batch {
 

@@ -3,7 +3,6 @@
 #include <keeler/core/error.hpp>
 #include <keeler/runs/run_stage.hpp>
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 

@@ -19,7 +19,6 @@
 #include <optional>
 #include <thread>
 #include <utility>
-#include <vector>
 
 namespace keeler::batch {
 namespace {

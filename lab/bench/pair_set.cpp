@@ -1,7 +1,6 @@
 #include <keeler/bench/pair_set.hpp>
 
 #include <keeler/core/stopwatch.hpp>
-#include <keeler/finders/finder.hpp>
 
 #include <cassert>
 #include <limits>

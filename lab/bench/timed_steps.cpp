@@ -6,7 +6,6 @@
 #include <keeler/statistics/median.hpp>
 
 #include <algorithm>
-#include <cassert>
 
 namespace keeler::bench {
 namespace {

@@ -4,7 +4,6 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/json_of_files.hpp>
 
-#include <cassert>
 #include <charconv>
 #include <utility>
 

@@ -3,7 +3,6 @@
 #include "particle_lanes.hpp"
 
 #include <keeler/particles/store.hpp>
-#include <keeler/render/colour_field.hpp>
 
 #include <algorithm>
 #include <atomic>

@@ -18,4 +18,10 @@ std::string measured_table(const quantities::Record& numbers, std::optional<quan
 /// Returns all numbers, by their names in `keeler analyze --json`.
 std::string all_numbers(const quantities::Record& numbers);
 
+/// Returns a table of the approximations, their errors and their fractions of the wall time. `summary` is summary.json.
+std::string accuracy_table(const Scene& scene, const quantities::Record& summary);
+
+/// Returns a table of the wall time by parts.
+std::string timing_table(const quantities::Record& summary);
+
 } // namespace keeler::run_report

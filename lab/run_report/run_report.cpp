@@ -1,6 +1,5 @@
 #include <keeler/run_report/run_report.hpp>
 
-#include "accuracy.hpp"
 #include "assets.hpp"
 #include "number_tables.hpp"
 #include "particle_view.hpp"
@@ -31,7 +30,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <optional>
 #include <utility>
 #include <vector>
 

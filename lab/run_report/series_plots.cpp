@@ -10,8 +10,6 @@
 #include <cmath>
 #include <numbers>
 #include <set>
-#include <string>
-#include <vector>
 
 namespace keeler::run_report {
 namespace {

@@ -1,4 +1,4 @@
-#include "output.hpp"
+#include "tables.hpp"
 
 #include <keeler/core/format.hpp>
 #include <keeler/files/files.hpp>

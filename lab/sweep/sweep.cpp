@@ -1,12 +1,10 @@
 #include <keeler/sweep/sweep.hpp>
 
 #include "figure.hpp"
-#include "output.hpp"
 #include "tables.hpp"
 
 #include <keeler/advice/warnings.hpp>
 #include <keeler/batch/claims.hpp>
-#include <keeler/batch/workers.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/interrupt.hpp>

@@ -14,4 +14,8 @@ namespace keeler::sweep {
 batch::Json runs_as_json(const Grid& grid, const Plan& plan, const std::vector<batch::RunRow>& runs);
 batch::Json points_as_json(const Grid& grid, const Plan& plan, const std::vector<batch::PointRow>& points);
 
+/// Writes report.md.
+void write_report(const Grid& grid, const Plan& plan, const std::vector<batch::RunRow>& runs,
+                  const std::vector<batch::PointRow>& points, const batch::RunFolders& folders, bool with_figure);
+
 } // namespace keeler::sweep

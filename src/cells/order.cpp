@@ -3,7 +3,6 @@
 #include <keeler/core/counting_sort.hpp>
 
 #include <algorithm>
-#include <cassert>
 
 namespace keeler::cells {
 namespace {

@@ -3,18 +3,20 @@
 #include "common_options.hpp"
 #include "number_options.hpp"
 #include "print.hpp"
-#include "profile_file.hpp"
 #include "results.hpp"
 #include "sight_options.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/json_of_files.hpp>
+#include <keeler/diagnostics/dispersion.hpp>
+#include <keeler/diagnostics/radial_profile.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/files/new_file.hpp>
 #include <keeler/quantities/views.hpp>
 #include <keeler/report/csv.hpp>
 #include <keeler/runs/measured_part.hpp>
 #include <keeler/runs/measurement.hpp>
+#include <keeler/runs/patch_units.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -36,7 +38,7 @@ struct AnalyzeOptions {
   NumberOptions numbers;
   runs::OrbitWindow window;
   std::optional<std::string> profile, csv;
-  std::size_t profile_bins = default_profile_bins;
+  std::size_t profile_bins = 100;
   SightOptions sights;
   ThreadOption threads;
 };
@@ -52,6 +54,36 @@ void write_snapshots(const fs::path& file, const runs::StoredPatches& stored, co
   }
   if (rows.front().is_null())
     throw UsageError("none of the numbers of --only has a column in --csv; lists and words are in --json");
+  write_table(file, report::csv_with_gaps(rows));
+}
+
+// A row of the profiles. Velocities of an empty bin are unknown.
+quantities::Record profile_row(const Patch& patch, const diagnostics::RadialBin& bin,
+                               const quantities::PatchUnits& units) {
+  namespace unit = quantities::unit;
+  const auto speed = [&](const Vec3& velocity, int axis) {
+    return bin.count > 0 ? quantities::Value(diagnostics::velocity_si(patch, velocity)[axis])
+                         : quantities::Value(quantities::Unknown{});
+  };
+  return {{{{"time", unit::orbits}, patch.time_orbits},
+           {{"x", unit::metres}, bin.x},
+           {{"count"}, std::uint64_t{bin.count}},
+           {{"surface_density", unit::surface_density}, bin.surface_density},
+           {{"optical_depth"}, bin.optical_depth},
+           {{"velocity_x", unit::metres_per_second}, speed(bin.velocity, 0)},
+           {{"velocity_y", unit::metres_per_second}, speed(bin.velocity, 1)},
+           {{"dispersion_x", unit::metres_per_second}, speed(bin.dispersion, 0)},
+           {{"dispersion_y", unit::metres_per_second}, speed(bin.dispersion, 1)},
+           {{"dispersion_z", unit::metres_per_second}, speed(bin.dispersion, 2)}},
+          units};
+}
+
+// Writes one row per snapshot and bin.
+void write_profiles(const fs::path& file, const std::vector<Patch>& patches, const AnalyzeOptions& options) {
+  auto rows = nlohmann::ordered_json::array();
+  for (const Patch& patch : patches)
+    for (const diagnostics::RadialBin& bin : diagnostics::radial_profile(patch, options.profile_bins))
+      rows.push_back(row_of(profile_row(patch, bin, runs::units_of(patch)), options.numbers.system()));
   write_table(file, report::csv_with_gaps(rows));
 }
 
@@ -90,7 +122,7 @@ ExitCode run(const AnalyzeOptions& options) {
   if (options.sights.requested())
     sights.emplace(options.sights, stored.patches);
   if (tables.profile)
-    write_profiles(*tables.profile, stored.patches, options.profile_bins);
+    write_profiles(*tables.profile, stored.patches, options);
   if (tables.csv)
     write_snapshots(*tables.csv, stored, options);
   if (tables.fill_standard_output)

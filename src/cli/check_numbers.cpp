@@ -1,6 +1,5 @@
 #include "check_numbers.hpp"
 
-#include <keeler/advice/estimate.hpp>
 #include <keeler/advice/grain_piles.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/scene/contact_rates.hpp>

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <memory>
 
 namespace keeler::cli {
 namespace {

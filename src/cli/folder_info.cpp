@@ -18,7 +18,6 @@
 
 #include <algorithm>
 #include <ctime>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>

@@ -22,8 +22,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <cassert>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>

@@ -17,7 +17,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <memory>
 
 namespace keeler::cli {
 namespace {

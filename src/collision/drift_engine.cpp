@@ -14,10 +14,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cassert>
-#include <cmath>
 
 namespace keeler::collision {
 namespace {

@@ -7,8 +7,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <filesystem>
 #include <span>

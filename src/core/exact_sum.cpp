@@ -1,6 +1,5 @@
 #include <keeler/core/exact_sum.hpp>
 
-#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>

@@ -13,7 +13,6 @@
 #include <cerrno>
 #include <charconv>
 #include <climits>
-#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <random>

@@ -1,7 +1,6 @@
 #include <keeler/hill/shearing_box.hpp>
 
 #include <cassert>
-#include <cmath>
 
 namespace keeler::hill {
 namespace {

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <cassert>
-#include <cmath>
 
 namespace keeler::initial_conditions {
 namespace {

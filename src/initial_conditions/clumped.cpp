@@ -15,9 +15,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 namespace keeler::initial_conditions {
 namespace {
 

@@ -8,7 +8,6 @@
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/initial_conditions/possible.hpp>
-#include <keeler/scene/load_parts.hpp>
 
 #include <fmt/format.h>
 

@@ -5,7 +5,6 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/exact_sum.hpp>
 #include <keeler/core/parallel.hpp>
-#include <keeler/core/random.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/scene/layer.hpp>
 

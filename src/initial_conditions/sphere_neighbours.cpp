@@ -5,7 +5,6 @@
 #include <keeler/core/parallel.hpp>
 
 #include <algorithm>
-#include <cassert>
 #include <numeric>
 #include <tuple>
 

@@ -4,7 +4,6 @@
 #include <keeler/core/exact_sum.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
-#include <keeler/scene/patch_scale.hpp>
 
 #include <algorithm>
 #include <array>

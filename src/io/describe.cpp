@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <cassert>
-#include <optional>
 #include <span>
 #include <string_view>
 

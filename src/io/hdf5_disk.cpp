@@ -5,7 +5,6 @@
 #include <keeler/core/error.hpp>
 
 #include <algorithm>
-#include <cassert>
 #include <new>
 
 namespace keeler::io::hdf5 {

@@ -2,12 +2,9 @@
 
 #include "computing.hpp"
 
-#include <keeler/core/error.hpp>
 #include <keeler/core/stopwatch.hpp>
 
 #include <fmt/format.h>
-
-#include <cassert>
 
 namespace keeler::python {
 namespace {

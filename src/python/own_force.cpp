@@ -16,7 +16,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cassert>
-#include <cmath>
 #include <memory>
 
 namespace keeler::python {

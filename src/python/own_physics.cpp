@@ -14,7 +14,6 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace keeler::python {

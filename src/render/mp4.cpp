@@ -8,9 +8,7 @@
 #include <cassert>
 #include <cerrno>
 #include <csignal>
-#include <cstdio>
 #include <cstring>
-#include <string>
 #include <vector>
 
 #include <fcntl.h>

@@ -5,7 +5,6 @@
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/random.hpp>
-#include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/particles/order.hpp>
 

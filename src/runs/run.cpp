@@ -13,7 +13,6 @@
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
-#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/io/checkpoint.hpp>
 #include <keeler/io/checkpoint_folder.hpp>
 #include <keeler/runs/folder_lock.hpp>

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <cassert>
-#include <string_view>
 
 namespace keeler::runs {
 namespace fs = std::filesystem;

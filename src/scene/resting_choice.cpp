@@ -7,7 +7,6 @@
 
 #include <cassert>
 #include <cmath>
-#include <utility>
 
 namespace keeler::scene {
 namespace {

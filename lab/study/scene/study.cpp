@@ -4,14 +4,11 @@
 #include "study_folder.hpp"
 
 #include <keeler/advice/warnings.hpp>
-#include <keeler/batch/workers.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/runs/folder_lock.hpp>
 
 #include <fmt/format.h>
-
-#include <algorithm>
 
 namespace keeler::study {
 namespace {
