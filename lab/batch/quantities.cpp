@@ -150,7 +150,7 @@ RunQuantities::RunQuantities(const std::vector<std::string>& extra, std::optiona
           fmt::format("'{}' is not a plain number, so it cannot be a column of a table; leave it out", name));
 }
 
-// Adds the quantities with that name, except those that are columns already. Returns false if no plain number has it.
+// Adds the quantities with that name, unless they are columns already. Returns false if no plain number has it.
 bool RunQuantities::add_named(const std::string& name, std::span<const quantities::Quantity> all,
                               quantities::Record Source::*record) {
   bool has_column = false;

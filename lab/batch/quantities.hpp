@@ -33,8 +33,8 @@ class RunQuantities {
 public:
   /// Names are matched by Quantity::is_called(), first with the numbers of keeler analyze, then of summary.json, then
   /// of series.csv (means; rates per orbit of what accumulates). Truth values count as 1 and 0. `units`: the units of
-  /// velocities and viscosities; none: those of each quantity. Throws UsageError for a name that no number has, or that
-  /// is not a plain number.
+  /// velocities and viscosities; none: the forms of each quantity. Throws UsageError for a name that no number has, or
+  /// that is not a plain number.
   explicit RunQuantities(const std::vector<std::string>& extra = {},
                          std::optional<quantities::UnitSystem> units = std::nullopt);
 
@@ -42,7 +42,7 @@ public:
   static std::vector<quantities::Quantity> known();
 
   const std::vector<RunColumn>& columns() const { return columns_; }
-  /// Returns the index of the column with that name, or of the first one whose quantity is called so in other units
+  /// Returns the index of the column with that name, or of the first with this name in other units
   /// or per orbit; none if there is none.
   std::optional<std::size_t> find(const std::string& name) const;
 

@@ -17,7 +17,7 @@ inline constexpr std::size_t max_particles_in_view = 100'000; ///< of more, the 
 
 struct RunReportOptions {
   std::size_t snapshots = 8;                   ///< maximum number in the view, evenly through the run
-  std::optional<quantities::UnitSystem> units; ///< of velocities and viscosities; none: those of each number
+  std::optional<quantities::UnitSystem> units; ///< of velocities and viscosities; none: the forms of each number
   std::function<void(const Progress&)> progress;
 };
 

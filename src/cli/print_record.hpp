@@ -8,7 +8,7 @@
 
 namespace keeler::cli {
 
-/// Prints the numbers as lines, or as JSON, in their default units or in those of `system`.
+/// Prints the numbers as lines, or as JSON, in their default units or in the units of `system`.
 inline void print_record(const quantities::Record& record, bool as_json,
                          std::optional<quantities::UnitSystem> system = std::nullopt) {
   print("{}", as_json ? json_text(json_of(record, system), 2) + "\n" : lines_of(record, system));
