@@ -75,4 +75,12 @@ if(KEELER_PYTHON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
     "${PROJECT_SOURCE_DIR}/cmake/debian/postinst" "${PROJECT_SOURCE_DIR}/cmake/debian/prerm")
 endif()
+# A build with MPI makes this package alone: all others are of the build without.
+if(KEELER_MPI)
+  set(CPACK_COMPONENTS_ALL mpi)
+  debian_package(mpi keeler-mpi science "simulates a patch of a planetary ring on several processes"
+    "The program of keeler built with MPI: mpirun -n 4 keeler-mpi run shares"
+    "a run among processes of one machine or many, with the same bits.")
+  set(CPACK_DEBIAN_MPI_PACKAGE_DEPENDS "keeler (= ${PROJECT_VERSION}), openmpi-bin")
+endif()
 include(CPack)

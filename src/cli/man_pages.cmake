@@ -1,4 +1,4 @@
-# cmake -DPROGRAM=keeler -DFOLDER=man -P man_pages.cmake: writes a manual page for each command, and keeler.1 last, from
+# cmake -DPROGRAM=keeler -DFOLDER=man -DDATE=2026-11-27 -P man_pages.cmake: writes a manual page for each command, and keeler.1 last, from
 # the texts of --help.
 cmake_minimum_required(VERSION 3.20)
 
@@ -49,7 +49,7 @@ function(write_page)
   else()
     string(REGEX REPLACE "\n.TP\n.B ([a-z]+)\n" "\n.TP\n\\\\fBkeeler\\\\-\\1\\\\fR(1)\n" body "${body}")
   endif()
-  file(WRITE "${FOLDER}/${page}.1" ".TH ${title} 1 \"\" \"${version}\" \"Keeler\"
+  file(WRITE "${FOLDER}/${page}.1" ".TH ${title} 1 \"${DATE}\" \"${version}\" \"Keeler\"
 .SH NAME
 ${page} \\- ${about}
 .SH DESCRIPTION${body}.SH EXIT STATUS

@@ -7,6 +7,11 @@ if(EXISTS "${SOURCE}/.git") # else sources unpacked inside someone's repository 
   if(NOT failed AND described)
     set(commit "${described}")
   endif()
+else() # the archive of a release: git archive has put its commit here
+  file(STRINGS "${SOURCE}/cmake/commit.txt" archived LIMIT_COUNT 1)
+  if(archived MATCHES "^[0-9a-f]+$")
+    set(commit "${archived}")
+  endif()
 endif()
 file(CONFIGURE OUTPUT "${OUTPUT}" @ONLY CONTENT [[
 #pragma once

@@ -74,7 +74,7 @@ code=$?
 cp -r "$KEELER_DISK/." "$KEELER_COPY" && exit $code"""
 
 
-def _mounter():
+def mounter():
     for words in (["unshare", "-m"], ["unshare", "-rm"]):
         if shutil.which("unshare") and subprocess.run(words + ["true"], capture_output=True).returncode == 0:
             return words
@@ -155,7 +155,7 @@ FAULTS = [
     Fault("file-size", "limits on the size of files", "a run with every kind of file, 0 to 64 KB in steps of 256 bytes", 256,
           6, _file_size),
     Fault("small-disk", "small disks that fill up", "the same run on file systems of 20 to 600 KB", 150, 4, _small_disk,
-          lambda scenes, folder: (scenes, _mounter())),
+          lambda scenes, folder: (scenes, mounter())),
     Fault("outputs", "limits on the size of files: other commands", "pictures, movies, tables, reports, states, profiles",
           200, 10, _other_outputs),
     Fault("memory", "limits on memory", "a run, convert and analyze, in steps of 0.25 MB from what the libraries alone take",

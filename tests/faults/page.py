@@ -15,11 +15,14 @@ TAIL = """
 | lost | something that was on disk is gone, in silence, or a run that could go on does not |
 | wrong | a result differs in a bit, a damaged file is taken for a whole one, output is in two places, parts of files are left, the exit code is another than the manual's, or a failure is not one line of at most 2000 bytes |
 | crashes | a signal that nobody sent ends the program, or a library or the C++ runtime speaks in its place |
-| hangs | a command takes longer than 20 seconds; none of them needs one |
+| hangs | a command takes longer than 20 seconds, under mpirun 60; none of them needs one, and mpirun 7 to miss a host whose cable was cut |
 
 Snapshots, checkpoints and files of contacts are [sealed](formats.md#the-seal): no damage of theirs may give other values. Texts and
 snapshots that other programs wrote have no seal. There a changed digit is a value like others, which nothing can tell;
 only the refusal of what is no value, and the manner of it, is tried.
+
+Where a rank or a host is lost mpirun ends the others, with an exit code and words of its own, which are not judged. A host whose cable
+is cut says nothing, and mpirun's default is to wait for it 8 minutes; here it was told to wait 6 s ([how](manual/ranks.md#when-a-host-vanishes)).
 
 Disks that lie about what they have written, and the loss of power, are not tried: a checkpoint is forced to disk before the one
 before the last is removed, and what a disk says is believed.
