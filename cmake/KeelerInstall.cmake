@@ -11,7 +11,7 @@ install(EXPORT keeler NAMESPACE keeler:: FILE keeler-targets.cmake DESTINATION "
   COMPONENT library)
 configure_package_config_file(cmake/keeler-config.cmake.in keeler-config.cmake
   INSTALL_DESTINATION "${KEELER_PACKAGE_DIR}" NO_SET_AND_CHECK_MACRO)
-write_basic_package_version_file(keeler-config-version.cmake COMPATIBILITY SameMinorVersion)
+write_basic_package_version_file(keeler-config-version.cmake COMPATIBILITY SameMajorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/keeler-config.cmake" "${PROJECT_BINARY_DIR}/keeler-config-version.cmake"
   "${PROJECT_SOURCE_DIR}/cmake/KeelerPackages.cmake" DESTINATION "${KEELER_PACKAGE_DIR}" COMPONENT library)
 

@@ -23,7 +23,8 @@ bool one_of_several() {
 Communicator Communicator::launched() {
   if (one_of_several())
     throw UsageError("this build of Keeler has no MPI, but an MPI launcher has started several processes of it, which "
-                     "would all do the same work; start one process, or build with -DKEELER_MPI=ON");
+                     "would all do the same work; start one process, or keeler-mpi (a package of its own; from source, "
+                     "build with -DKEELER_MPI=ON)");
   return {};
 }
 

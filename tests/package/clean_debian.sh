@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# clean_debian.sh SOURCE_DIR FOLDER: Keeler's Debian packages, made and installed on a Debian 12 that holds nothing else. The
-# program follows the first page of the tutorial, as it was installed; the Python package and the library work; nothing is left
-# after their removal. Then the same with what the Containerfile does, and without root. Needs root, debootstrap and the
-# network, else it is skipped (77). FOLDER keeps the clean system for the next time.
+# clean_debian.sh SOURCE_DIR FOLDER: Keeler's source archive, of the last commit, and the Debian packages made of it and installed
+# on a Debian 12 that holds nothing else. The program follows the first page of the tutorial, as it was installed; ranks, the
+# Python package and the library work; nothing is left after their removal. Then the same with what the Containerfile does, and
+# without root. Needs root, debootstrap and the network, else it is skipped (77). FOLDER keeps the clean system for the next time.
 set -euo pipefail
 source_dir=$(realpath "$1")
 mkdir -p "$2"
 folder=$(realpath "$2")
-packages=$source_dir/build/package
+packages=$folder/packages
 clean=$folder/clean
 system=$folder/system
 
@@ -52,14 +52,19 @@ if [ ! -d "$clean" ]; then
   mv "$clean.part" "$clean"
 fi
 
-echo "=== scripts/package"
+echo "=== the source archive, and scripts/package from it"
+"$source_dir/scripts/package" --source
+archive=$(echo "$source_dir"/build/package/keeler-*.tar.gz)
 fresh_system
-rm -rf "$packages"
-shared=("$source_dir")
+mkdir -p "$system$source_dir" # at the same path, which compiled objects in the cache depend on
+tar -C "$system$source_dir" --strip-components 1 -xf "$archive"
 cache=${CCACHE_DIR:-$HOME/.cache/ccache}
-[ ! -d "$cache" ] || shared+=("$cache")
+[ ! -d "$cache" ] || shared=("$cache")
 inside env CCACHE_DIR="$cache" "$source_dir/scripts/package"
 shared=()
+rm -rf "$packages"
+mkdir "$packages"
+cp "$system$source_dir"/build/package/*.deb "$packages"
 
 echo "=== keeler: the tutorial's first page"
 fresh_system
@@ -79,12 +84,28 @@ inside sh -c 'keeler check /usr/share/keeler/examples/a-ring-wakes/scene.toml'
 inside sh -c 'keeler report /srv/tutorial/first'
 grep -q 'THREE.' "$system/srv/tutorial/first/report.html" || { echo "FAILED: the report has no view"; exit 1; }
 
+commit=$(git -C "$source_dir" rev-parse HEAD)
+inside keeler run equilibrium -o /srv/first --set time.end=0.01 >/dev/null
+grep -qF "$commit" "$system/srv/first/summary.json" || { echo "FAILED: the program does not name the commit $commit"; exit 1; }
+
+echo "=== keeler-mpi"
+install_packages '/tmp/keeler-mpi_*.deb'
+inside useradd --create-home ringmaster
+# shellcheck disable=SC2016 # for the other shell
+inside su ringmaster -c 'cd && keeler run equilibrium -o one --set time.end=0.5 &&
+  mpirun -n 2 --oversubscribe keeler-mpi run equilibrium -o two --set time.end=0.5 &&
+  cp two/summary.json . && keeler resume two --until 1 && keeler-mpi resume one --until 1'
+home=$system/home/ringmaster
+[ "$(grep -h state_hash "$home"/{one,two}/summary.json | sort -u | wc -l)" = 1 ] ||
+  { echo "FAILED: keeler and keeler-mpi have other bits"; exit 1; }
+grep -q '"ranks": 2' "$home/summary.json" || { echo "FAILED: not two ranks"; exit 1; }
+
 echo "=== python3-keeler, libkeeler-dev"
 install_packages '/tmp/python3-keeler_*.deb /tmp/libkeeler-dev_*.deb' g++ make
 inside python3 -c 'import keeler; print(keeler.program())'
 inside sh -ec 'cp -r /usr/share/keeler/examples/embed /tmp/embed
   cmake -S /tmp/embed -B /tmp/embed/build && cmake --build /tmp/embed/build && /tmp/embed/build/embed'
-inside sh -c 'apt-get -qq purge -y keeler python3-keeler libkeeler-dev >/dev/null'
+inside sh -c 'apt-get -qq purge -y keeler keeler-mpi python3-keeler libkeeler-dev >/dev/null'
 left=$(find "$system/usr" -path '*keeler*')
 [ -z "$left" ] || { echo "FAILED: the packages leave $left"; exit 1; }
 
