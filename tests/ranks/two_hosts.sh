@@ -41,5 +41,6 @@ chmod +x "$folder/agent"
 export OMPI_MCA_plm_rsh_agent=$folder/agent OMPI_MCA_btl=tcp,self
 export OMPI_MCA_btl_tcp_if_include=10.0.7.0/24 OMPI_MCA_oob_tcp_if_include=10.0.7.0/24
 export OMPI_MCA_oob_tcp_keepalive_time=3 OMPI_MCA_oob_tcp_keepalive_intvl=1 OMPI_MCA_oob_tcp_keepalive_probes=3
+export OMPI_MCA_mpi_yield_when_idle=1 # both hosts have the same processors
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 "$@"
