@@ -50,7 +50,7 @@ template<class Row> std::vector<std::byte> packed(const std::vector<Row>& rows) 
 class DistributedStep {
 public:
   DistributedStep(const StepContext& step, StepHistory& history, BroadPhase& broad_phase, StepOutcome& outcome,
-                  DriftCosts& costs, const decomposition::GhostLayer& ghosts, const Communicator& ranks)
+                  DriftCosts& costs, decomposition::GhostLayer& ghosts, const Communicator& ranks)
       : step_(step), history_(history), broad_phase_(broad_phase), outcome_(outcome), costs_(costs), ghosts_(ghosts),
         ranks_(ranks), journal_(step, history, ghosts) {}
 
@@ -76,13 +76,13 @@ public:
   /// Exchanges reports of all ghosts' paths. Returns true if anything is new to one of the ranks.
   bool exchange_reports() {
     comm::Parcels reports(ranks_.size());
-    for (std::size_t rank = 0; rank < ranks_.size(); ++rank)
+    for (const std::size_t rank : ghosts_.partners)
       reports[rank] = packed(reports_of(ghosts_.sent[rank]));
     const bool is_new = ranks_.any(reports != sent_);
-    sent_ = reports;
-    const comm::Parcels from = ranks_.exchange(std::move(reports));
+    sent_ = std::move(reports);
+    const comm::Parcels from = ranks_.exchange(sent_, ghosts_.partners);
     received_.clear();
-    for (std::size_t rank = 0; rank < ranks_.size(); ++rank)
+    for (const std::size_t rank : ghosts_.partners)
       for (PathReport report : rows_of<PathReport>(from[rank])) {
         report.ghost += ghosts_.first[rank] - ghosts_.own;
         assert(report.ghost < ghosts_.near.size());
@@ -130,6 +130,11 @@ public:
     tally.fast += counts[0];
     tally.slow += counts[1];
     tally.unresolved += counts[2];
+    ++ghosts_.steps;
+    journal_.visit_hit([&](std::uint32_t particle) {
+      if (particle < ghosts_.own)
+        ghosts_.contacts[particle] += history_.event_count(particle);
+    });
   }
 
 private:
@@ -189,7 +194,7 @@ private:
   BroadPhase& broad_phase_;
   StepOutcome& outcome_;
   DriftCosts& costs_;
-  const decomposition::GhostLayer& ghosts_;
+  decomposition::GhostLayer& ghosts_;
   const Communicator& ranks_;
   PathJournal journal_;
   comm::Parcels sent_;               // reports, to each rank
@@ -200,7 +205,7 @@ private:
 
 } // namespace
 
-bool DriftEngine::collide_distributed(Particles& particles, const decomposition::GhostLayer& ghosts,
+bool DriftEngine::collide_distributed(Particles& particles, decomposition::GhostLayer& ghosts,
                                       const Communicator& ranks, const ShearingBox& box, double offset,
                                       CollisionTally& tally, const KickInterval& gravity) {
   assert(finder().exact() && !(observer_ && observer_->wants_events()) && !audit_);

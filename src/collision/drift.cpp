@@ -36,9 +36,9 @@ void DriftPhase::collide(Particles& particles, const ShearingBox& box, double of
   engine_->collide(particles, box, offset, tally, undisturbed, gravity);
 }
 
-bool DriftPhase::collide_distributed(Particles& particles, const decomposition::GhostLayer& ghosts,
-                                     const Communicator& ranks, const ShearingBox& box, double offset,
-                                     CollisionTally& tally, const KickInterval& gravity) {
+bool DriftPhase::collide_distributed(Particles& particles, decomposition::GhostLayer& ghosts, const Communicator& ranks,
+                                     const ShearingBox& box, double offset, CollisionTally& tally,
+                                     const KickInterval& gravity) {
   return engine_->collide_distributed(particles, ghosts, ranks, box, offset, tally, gravity);
 }
 

@@ -31,7 +31,7 @@ public:
 
   void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally, bool undisturbed,
                const KickInterval& gravity);
-  bool collide_distributed(Particles& particles, const decomposition::GhostLayer& ghosts, const Communicator& ranks,
+  bool collide_distributed(Particles& particles, decomposition::GhostLayer& ghosts, const Communicator& ranks,
                            const ShearingBox& box, double offset, CollisionTally& tally, const KickInterval& gravity);
   DriftCosts costs() const;
 

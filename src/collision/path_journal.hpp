@@ -92,6 +92,11 @@ public:
   }
 
   const std::vector<PathChange>& changes() const { return changes_; }
+  /// Calls visit(particle) for each particle that was hit.
+  template<class Visit> void visit_hit(const Visit& visit) const {
+    for (const Beginning& beginning : beginnings_)
+      visit(beginning.particle);
+  }
   /// True if an own particle may have gone farther than the margin within which the ghosts suffice.
   bool has_strayed() const { return has_strayed_; }
 
@@ -103,7 +108,7 @@ private:
   };
 
   void note_path(std::uint32_t i, const Elements& path) {
-    has_strayed_ = has_strayed_ || (i < ghosts_.own && !ghosts_.within_margin(i, path, step_.end() - step_.begin));
+    has_strayed_ = has_strayed_ || (i < ghosts_.own && !ghosts_.within_margin(i, path));
   }
 
   const StepContext& step_;

@@ -121,8 +121,7 @@ bool another_rank_reports() {
 }
 
 // Each rank sends to rank + k and receives from rank − k (modulo their number) in round k. Long parcels go in pieces.
-void Communicator::exchange(const std::vector<std::span<const std::byte>>& sent,
-                            const std::function<std::byte*(std::size_t rank, std::size_t size)>& allocate) const {
+void Communicator::exchange(const std::vector<std::span<const std::byte>>& sent, const Allocate& allocate) const {
   assert(sent.size() == size_);
   if (!distributed())
     return;
@@ -152,6 +151,38 @@ void Communicator::exchange(const std::vector<std::span<const std::byte>>& sent,
       MPI_Isend(sent[other].data() + begin, size, MPI_BYTE, as_int(other), 0, MPI_COMM_WORLD, request);
     });
   }
+  MPI_Waitall(as_int(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+}
+
+// A partner's message tells its size when it arrives, so no sizes are sent before.
+void Communicator::exchange(const std::vector<std::span<const std::byte>>& sent, std::span<const std::size_t> partners,
+                            const Allocate& allocate) const {
+  constexpr int tag = 1; // not mistaken for a message of the exchange between all ranks
+  const Stopwatch watch(costs.seconds);
+  std::vector<MPI_Request> requests;
+  std::uint64_t bytes_sent = 0, bytes_received = 0;
+  for (const std::size_t other : partners) {
+    assert(other != rank_ && other < size_);
+    const auto& parcel = sent[other];
+    if (parcel.size() >= max_message)
+      throw UsageError(fmt::format("rank {} has {} GiB for a neighbour, more than a message can be; start more ranks",
+                                   rank_, parcel.size() >> 30));
+    bytes_sent += parcel.size();
+    ++costs.messages;
+    MPI_Isend(parcel.data(), as_int(parcel.size()), MPI_BYTE, as_int(other), tag, MPI_COMM_WORLD,
+              &requests.emplace_back());
+  }
+  for (const std::size_t other : partners) {
+    MPI_Status status;
+    int size = 0;
+    MPI_Probe(as_int(other), tag, MPI_COMM_WORLD, &status);
+    MPI_Get_count(&status, MPI_BYTE, &size);
+    std::byte* const bytes = allocate(other, static_cast<std::size_t>(size));
+    MPI_Recv(bytes, size, MPI_BYTE, as_int(other), tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    bytes_received += static_cast<std::uint64_t>(size);
+  }
+  costs.bytes += bytes_sent;
+  record_bytes(std::max(bytes_sent, bytes_received));
   MPI_Waitall(as_int(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
 }
 

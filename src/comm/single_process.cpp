@@ -33,8 +33,12 @@ Parcels Communicator::exchange(Parcels parcels) const {
   return parcels;
 }
 void Communicator::exchange([[maybe_unused]] const std::vector<std::span<const std::byte>>& sent,
-                            const std::function<std::byte*(std::size_t, std::size_t)>&) const {
+                            const Allocate&) const {
   assert(sent.size() == size_);
+}
+void Communicator::exchange([[maybe_unused]] const std::vector<std::span<const std::byte>>& sent,
+                            [[maybe_unused]] std::span<const std::size_t> partners, const Allocate&) const {
+  assert(sent.size() == size_ && partners.empty());
 }
 std::vector<std::byte> Communicator::gather(std::vector<std::byte> bytes) const {
   return bytes;

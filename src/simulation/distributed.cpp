@@ -4,7 +4,7 @@
 #include <keeler/cells/overlap.hpp>
 #include <keeler/collision/settings.hpp>
 #include <keeler/core/error.hpp>
-#include <keeler/decomposition/slabs.hpp>
+#include <keeler/decomposition/blocks.hpp>
 #include <keeler/finders/finders.hpp>
 
 #include <fmt/format.h>
@@ -40,13 +40,13 @@ void Simulation::divide() {
   if (!ranks_.distributed())
     return;
   ranks_.together([&] { require_distributable(scene_, count_); });
-  slabs_ = std::make_unique<decomposition::Slabs>(ranks_, state_.box, scene_.planet.frequencies);
-  slabs_->distribute(holding());
+  blocks_ = std::make_unique<decomposition::Blocks>(ranks_, state_.box, scene_.planet.frequencies);
+  blocks_->distribute(holding());
 }
 
 // Returns the particles, and the accelerations of their last kicks, which the next half kick needs.
-decomposition::SlabHolding Simulation::holding() {
-  decomposition::SlabHolding holding{state_.particles, {}};
+decomposition::Holding Simulation::holding() {
+  decomposition::Holding holding{state_.particles, {}};
   for (ForceState& force : state_.forces)
     holding.rows.push_back(&force.accelerations);
   return holding;
@@ -54,10 +54,12 @@ decomposition::SlabHolding Simulation::holding() {
 
 // Makes sure that the ghost layer is valid for the next step.
 void Simulation::require_ghost_layer() {
-  if (slabs_->is_valid(state_.particles, state_.step_length))
+  const decomposition::Epoch epoch{0.5 * state_.tick() * static_cast<double>(2 * state_.step + state_.control.step),
+                                   state_.epoch_offset(), state_.step_length};
+  if (blocks_->is_valid(state_.particles, epoch))
     return;
   drift_.release();
-  slabs_->rebuild(holding(), state_.epoch_offset(), state_.step_length);
+  blocks_->rebuild(holding(), epoch);
   find_moonlets();
 }
 
@@ -65,9 +67,9 @@ void Simulation::require_ghost_layer() {
 // boundary.
 cells::Overlap Simulation::largest_overlap_distributed() {
   require_ghost_layer();
-  slabs_->add_ghosts(state_.particles);
+  blocks_->add_ghosts(state_.particles);
   const cells::Overlap here = cells::largest_overlap(patch_of(state_.particles));
-  slabs_->remove_ghosts(state_.particles);
+  blocks_->remove_ghosts(state_.particles);
   cells::Overlap largest;
   for (const std::vector<cells::Overlap>& of_rank : ranks_.exchange(std::vector(ranks_.size(), std::vector{here})))
     if (deeper(of_rank.front(), largest))
@@ -79,17 +81,17 @@ void Simulation::collide_distributed() {
   const double offset = state_.epoch_offset();
   for (;;) {
     require_ghost_layer();
-    slabs_->add_ghosts(state_.particles);
+    blocks_->add_ghosts(state_.particles);
     if (scene_.gravity)
-      slabs_->add_ghosts(state_.forces.front().accelerations);
-    const bool done = drift_.collide_distributed(state_.particles, slabs_->ghosts(), ranks_, state_.box, offset,
+      blocks_->add_ghosts(state_.forces.front().accelerations);
+    const bool done = drift_.collide_distributed(state_.particles, blocks_->ghosts(), ranks_, state_.box, offset,
                                                  state_.collisions, kicks_of_drift());
-    slabs_->remove_ghosts(state_.particles);
+    blocks_->remove_ghosts(state_.particles);
     if (scene_.gravity)
-      slabs_->remove_ghosts(state_.forces.front().accelerations);
+      blocks_->remove_ghosts(state_.forces.front().accelerations);
     if (done)
       return;
-    slabs_->widen();
+    blocks_->widen();
   }
 }
 

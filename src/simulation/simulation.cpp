@@ -11,7 +11,7 @@
 #include <keeler/core/parallel.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/decomposition/slabs.hpp>
+#include <keeler/decomposition/blocks.hpp>
 #include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/forces/self_gravity.hpp>
 
@@ -211,7 +211,7 @@ void Simulation::sort_when_due() {
   if (state_.step % interval != 0)
     return;
   if (ranks_.distributed())
-    return slabs_->invalidate(); // the ghost layer is rebuilt, which sorts too
+    return blocks_->invalidate(); // the ghost layer is rebuilt, which sorts too
   const Stopwatch watch(split_.drift);
   drift_.release();
   undisturbed_ = false;

@@ -8,7 +8,7 @@
 
 #include <keeler/collision/costs.hpp>
 #include <keeler/collision/drift.hpp>
-#include <keeler/decomposition/slabs.hpp>
+#include <keeler/decomposition/blocks.hpp>
 
 #include <doctest/doctest.h>
 
@@ -23,30 +23,32 @@ namespace {
 // A rank's part of a ring.
 class Part {
 public:
-  Part(const Ring& ring, const collision::CollisionSettings& settings, const decomposition::Slabs::Reach& reach)
-      : own(ring.particles), slabs(keeler_test::launched(), ring.box, ring.frequencies, reach),
+  Part(const Ring& ring, const collision::CollisionSettings& settings, const decomposition::Blocks::Layout& layout)
+      : own(ring.particles), blocks(keeler_test::launched(), ring.box, ring.frequencies, layout),
         drift(settings, ring.frequencies, test::omega, ring.step), step_(ring.step) {
     if (!keeler_test::launched().is_root())
       own.bodies.clear(), own.ids.clear(), own.spins.clear();
-    slabs.distribute({own, {}});
+    blocks.distribute({own, {}});
   }
 
-  void collide(const ShearingBox& box, double offset, CollisionTally& tally) {
+  void collide(const Ring& ring, CollisionTally& tally) {
+    const double offset = ring.epoch_offset();
+    const decomposition::Epoch epoch{step_ * (static_cast<double>(ring.steps) + 0.5), offset, step_};
     for (bool done = false; !done;) {
-      if (!slabs.is_valid(own, step_)) {
+      if (!blocks.is_valid(own, epoch)) {
         drift.release();
-        slabs.rebuild({own, {}}, offset, step_);
+        blocks.rebuild({own, {}}, epoch);
       }
-      slabs.add_ghosts(own);
-      done = drift.collide_distributed(own, slabs.ghosts(), keeler_test::launched(), box, offset, tally);
-      slabs.remove_ghosts(own);
+      blocks.add_ghosts(own);
+      done = drift.collide_distributed(own, blocks.ghosts(), keeler_test::launched(), ring.box, offset, tally);
+      blocks.remove_ghosts(own);
       if (!done)
-        slabs.widen();
+        blocks.widen();
     }
   }
 
   Particles own;
-  decomposition::Slabs slabs;
+  decomposition::Blocks blocks;
   collision::DriftPhase drift;
 
 private:
@@ -72,21 +74,30 @@ Particles part_of(const Particles& whole, const Particles& own) {
 struct Walk {
   std::size_t contacts = 0;
   collision::DriftCosts costs;
-  std::uint64_t rebuilds = 0; // of the ghost layer
+  std::uint64_t rebuilds = 0, migrants = 0; // of the ghost layer
+  std::size_t ghosts = 0;                   // of all ranks at the end
 };
 
+// Returns numbers of strips: the ranks' choice, slabs across y, and blocks where there are enough ranks.
+std::vector<std::size_t> some_strips() {
+  const std::size_t ranks = keeler_test::launched().size();
+  if (ranks < 4)
+    return {0, 1};
+  return {0, 1, ranks / 2};
+}
+
 // Makes `steps` steps of a scenario's patch, which all ranks generate.
-Walk walk(const Scenario& s, std::uint64_t seed, int steps, const decomposition::Slabs::Reach& reach = {}) {
+Walk walk(const Scenario& s, std::uint64_t seed, int steps, const decomposition::Blocks::Layout& layout = {}) {
   const Communicator& ranks = keeler_test::launched();
   const collision::CollisionSettings settings = test::settings_of(s);
   Ring ring(test::make_patch(s, seed), settings, s.step);
-  Part part(ring, settings, reach);
+  Part part(ring, settings, layout);
   test::PlainDrift plain(settings, ring.frequencies, test::omega, ring.step);
   Walk walked;
   for (int k = 0; k < steps; ++k) {
     CollisionTally tally, expected;
     walked.contacts += plain.collide(ring.particles, ring.box, ring.epoch_offset(), expected).size();
-    part.collide(ring.box, ring.epoch_offset(), tally);
+    part.collide(ring, tally);
     INFO("step ", k);
     const bool same = test::same_bits(part.own, part_of(ring.particles, part.own));
     REQUIRE(!ranks.any(!same));
@@ -96,7 +107,9 @@ Walk walk(const Scenario& s, std::uint64_t seed, int steps, const decomposition:
     part.own = part_of(ring.particles, part.own);
   }
   walked.costs = part.drift.costs();
-  walked.rebuilds = part.slabs.rebuilds();
+  walked.rebuilds = part.blocks.rebuilds();
+  walked.migrants = ranks.sum(part.blocks.migrants());
+  walked.ghosts = ranks.sum(part.blocks.ghosts().ghosts());
   return walked;
 }
 
@@ -104,39 +117,42 @@ Walk walk(const Scenario& s, std::uint64_t seed, int steps, const decomposition:
 
 TEST_CASE("ranks: the same bits as the plain drift, loose and dense, for steps from 1/1000 to 1/20 orbit") {
   for (const double step : {1e-3, 5e-3, 2e-2, 5e-2})
-    for (const std::uint64_t seed : {1u, 2u}) {
+    for (const std::size_t strips : some_strips()) {
       CAPTURE(step);
-      CAPTURE(seed);
+      CAPTURE(strips);
       Scenario s;
       s.step = two_pi * step;
       s.count = 150;
-      CHECK(walk(s, seed, 30).contacts > 0);
+      CHECK(walk(s, 1 + strips, 30, {.strips = strips}).contacts > 0);
       s.count = 100;
       s.filling = 0.4, s.optical_depth = 1.2;
-      CHECK(walk(s, seed, 30).contacts > 0);
+      CHECK(walk(s, 1 + strips, 30, {.strips = strips}).contacts > 0);
     }
 }
 
 // Without ghosts beyond the near ones, and with almost no margin, nearly every step is repeated.
 TEST_CASE("ranks: a step is repeated if ghosts leave their owners' paths, with the bits of the plain drift") {
-  std::uint64_t again = 0, rounds = 0, strayed = 0;
-  for (const double step : {2e-3, 1e-2, 4e-2})
-    for (const double growth : {1.0, 1.5}) {
-      CAPTURE(step);
-      Scenario s;
-      s.step = two_pi * step;
-      s.count = 200;
-      s.filling = 0.45, s.optical_depth = 1.0;
-      const Walk walked = walk(s, 7, 25, {.growth = growth, .rows_beyond = 0.0});
-      again += walked.costs.repeated_steps;
-      rounds += walked.costs.repeated_rounds;
-      strayed += walked.costs.steps - 25;
-    }
-  MESSAGE(again, " steps repeated in ", rounds, " rounds, ", strayed, " with wider ghost layers");
-  const bool many = keeler_test::launched().distributed();
-  CHECK(again >= (many ? 10 : 0));
-  CHECK(rounds > (many ? again : 0));
-  CHECK(strayed >= (many ? 1 : 0));
+  for (const std::size_t strips : some_strips()) {
+    std::uint64_t again = 0, rounds = 0, strayed = 0;
+    for (const double step : {2e-3, 1e-2, 4e-2})
+      for (const double growth : {1.0, 1.5}) {
+        CAPTURE(step);
+        Scenario s;
+        s.step = two_pi * step;
+        s.count = 200;
+        s.filling = 0.45, s.optical_depth = 1.0;
+        const Walk walked = walk(s, 7, 25, {.growth = growth, .rows_beyond = 0.0, .strips = strips});
+        again += walked.costs.repeated_steps;
+        rounds += walked.costs.repeated_rounds;
+        strayed += walked.costs.steps - 25;
+      }
+    MESSAGE(strips, " strips: ", again, " steps repeated in ", rounds, " rounds, ", strayed,
+            " with wider ghost layers");
+    const bool many = keeler_test::launched().distributed();
+    CHECK(again >= (many ? 10 : 0));
+    CHECK(rounds > (many ? again : 0));
+    CHECK(strayed >= (many ? 1 : 0));
+  }
 }
 
 TEST_CASE(
@@ -160,6 +176,25 @@ TEST_CASE(
     s.friction = {.tangential_restitution = 0.5};
   }
   CHECK(walk(s, 3, 40).contacts > 20);
+  CHECK(walk(s, 4, 20, {.growth = 2.0, .rows_beyond = 0.0, .strips = some_strips().back()}).contacts > 10);
+}
+
+// In a large box most particles are no ghosts, and some move from block to block.
+TEST_CASE("ranks: the bits of the plain drift in a box much larger than the ghost layer") {
+  Scenario s;
+  s.count = 900;
+  s.step = two_pi * 2e-3;
+  s.optical_depth = 0.4;
+  for (const std::size_t strips : some_strips()) {
+    CAPTURE(strips);
+    const Walk walked = walk(s, 11, 60, {.growth = 4.0, .rows_beyond = 1.0, .strips = strips});
+    CHECK(walked.contacts > 20);
+    if (keeler_test::launched().distributed()) {
+      CHECK(walked.ghosts > 0);
+      CHECK(walked.ghosts < s.count * keeler_test::launched().size() / 2);
+      CHECK(walked.migrants > 0);
+    }
+  }
 }
 
 TEST_CASE("ranks: a ghost layer is valid for many steps") {
@@ -167,5 +202,6 @@ TEST_CASE("ranks: a ghost layer is valid for many steps") {
   s.count = 220;
   s.optical_depth = 0.2;
   s.step = two_pi * 1e-3;
-  CHECK(walk(s, 5, 60).rebuilds < 30);
+  for (const std::size_t strips : some_strips())
+    CHECK(walk(s, 5, 60, {.strips = strips}).rebuilds < 30);
 }

@@ -7,7 +7,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/random.hpp>
-#include <keeler/decomposition/slabs.hpp>
+#include <keeler/decomposition/blocks.hpp>
 #include <keeler/io/checkpoint.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/particles/by_id.hpp>
@@ -245,8 +245,9 @@ TEST_CASE("particles on one rank, or distributed at random, are sent to their ow
     for (const Body& body : own.bodies)
       rows.push_back({body.elements.guiding_x, body.mass, 0.0});
     ShearingBox box{200.0, 200.0, 1.5, 0.0};
-    decomposition::Slabs slabs(launched(), box, Frequencies{});
-    slabs.distribute({own, {&rows, &none}});
+    const std::size_t strips = with_one ? (launched().size() + 1) / 2 : launched().size();
+    decomposition::Blocks blocks(launched(), box, Frequencies{}, {.strips = strips});
+    blocks.distribute({own, {&rows, &none}});
     CHECK(static_cast<double>(own.size()) < 1.1 * static_cast<double>(all.size() / launched().size()));
     CHECK(rows.size() == own.size());
     for (std::size_t k = 0; k < std::min(rows.size(), own.size()); ++k)

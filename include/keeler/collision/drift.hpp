@@ -140,10 +140,11 @@ public:
                bool undisturbed = false, const KickInterval& gravity = {});
 
   /// Carries out a step that ranks share: own particles and ghosts (decomposition/ghost_layer.hpp), which have the bits
-  /// of their owners. The own particles become what they would on one rank, and each contact counts on all ranks.
+  /// of their owners. The own particles become what they would on one rank, each contact counts on all ranks, and
+  /// `ghosts` counts those of each own particle.
   /// Returns false on all, with everything as it was, if an own particle of one went farther than the margin.
   /// Preconditions: all ranks call it; the finder is exact; no observer wants events, and there is no audit.
-  bool collide_distributed(Particles& particles, const decomposition::GhostLayer& ghosts, const Communicator& ranks,
+  bool collide_distributed(Particles& particles, decomposition::GhostLayer& ghosts, const Communicator& ranks,
                            const ShearingBox& box, double offset, CollisionTally& tally,
                            const KickInterval& gravity = {});
 

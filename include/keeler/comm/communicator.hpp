@@ -75,6 +75,13 @@ public:
   /// Sends rows[r] to rank r and returns the rows received, by sender. Precondition: rows.size() == size().
   template<class Row> std::vector<std::vector<Row>> exchange(const std::vector<std::vector<Row>>& rows) const;
 
+  /// As above, among `partners` only: neither other ranks nor a collective call are waited for, and each partner gets a
+  /// message of less than 1 GiB. Preconditions: partners are ascending and never this rank; a partner has this rank as
+  /// a partner; rows to others are empty.
+  template<class Row>
+  std::vector<std::vector<Row>> exchange(const std::vector<std::vector<Row>>& rows,
+                                         std::span<const std::size_t> partners) const;
+
   /// Sends sent[r] to rank r and receives received[r] from it, without intermediate buffers. Precondition: sender and
   /// receiver agree on the count and size of the blocks.
   void exchange(std::span<const Blocks> sent, std::span<const Blocks> received) const;
@@ -127,9 +134,17 @@ private:
     assert(rank < size);
   }
 
-  /// Sends sent[r] to every other rank r. `allocate` returns the memory for `size` bytes received from a rank.
-  void exchange(const std::vector<std::span<const std::byte>>& sent,
-                const std::function<std::byte*(std::size_t rank, std::size_t size)>& allocate) const;
+  /// Returns the memory for `size` bytes received from a rank.
+  using Allocate = std::function<std::byte*(std::size_t rank, std::size_t size)>;
+
+  template<class Row, class Exchange>
+  std::vector<std::vector<Row>> exchange_by(const Exchange& exchange_bytes,
+                                            const std::vector<std::vector<Row>>& rows) const;
+  /// Sends sent[r] to every other rank r.
+  void exchange(const std::vector<std::span<const std::byte>>& sent, const Allocate& allocate) const;
+  /// Sends sent[r] to every partner r. Throws UsageError if one of them gets 1 GiB or more.
+  void exchange(const std::vector<std::span<const std::byte>>& sent, std::span<const std::size_t> partners,
+                const Allocate& allocate) const;
 
   std::size_t rank_ = 0, size_ = 1;
 };
@@ -163,8 +178,9 @@ template<class Row> std::vector<Row> Communicator::gather(const std::vector<Row>
   return all;
 }
 
-template<class Row>
-std::vector<std::vector<Row>> Communicator::exchange(const std::vector<std::vector<Row>>& rows) const {
+template<class Row, class Exchange>
+std::vector<std::vector<Row>> Communicator::exchange_by(const Exchange& exchange_bytes,
+                                                        const std::vector<std::vector<Row>>& rows) const {
   static_assert(std::is_trivially_destructible_v<Row>); // plain numbers; Eigen's vectors are not trivially copyable
   assert(rows.size() == size_);
   std::vector<std::vector<Row>> received(rows.size());
@@ -172,12 +188,23 @@ std::vector<std::vector<Row>> Communicator::exchange(const std::vector<std::vect
   std::vector<std::span<const std::byte>> sent;
   for (const std::vector<Row>& to_rank : rows)
     sent.push_back(std::as_bytes(std::span(to_rank)));
-  exchange(sent, [&](std::size_t rank, std::size_t size) {
+  exchange_bytes(sent, [&](std::size_t rank, std::size_t size) {
     assert(size % sizeof(Row) == 0);
     received[rank].resize(size / sizeof(Row));
     return reinterpret_cast<std::byte*>(received[rank].data());
   });
   return received;
+}
+
+template<class Row>
+std::vector<std::vector<Row>> Communicator::exchange(const std::vector<std::vector<Row>>& rows) const {
+  return exchange_by([&](const auto& sent, const Allocate& allocate) { exchange(sent, allocate); }, rows);
+}
+
+template<class Row>
+std::vector<std::vector<Row>> Communicator::exchange(const std::vector<std::vector<Row>>& rows,
+                                                     std::span<const std::size_t> partners) const {
+  return exchange_by([&](const auto& sent, const Allocate& allocate) { exchange(sent, partners, allocate); }, rows);
 }
 
 } // namespace keeler::comm

@@ -23,8 +23,8 @@ class RestingContacts;
 } // namespace keeler::contact_solver
 
 namespace keeler::decomposition {
-class Slabs;
-struct SlabHolding;
+class Blocks;
+struct Holding;
 } // namespace keeler::decomposition
 
 namespace keeler::cells {
@@ -142,6 +142,9 @@ public:
     return state_.control.kick > 0 ? state_.control.kick : forces_[f]->kick_every();
   }
 
+  /// Returns the division of the box over ranks, for measurements; nullptr unless distributed.
+  const decomposition::Blocks* blocks() const { return blocks_.get(); }
+
   /// For observers of collisions and measurements of finders.
   collision::DriftPhase& drift() { return drift_; }
 
@@ -153,7 +156,7 @@ private:
   void require_ghost_layer();
   void collide_distributed();
   cells::Overlap largest_overlap_distributed();
-  decomposition::SlabHolding holding();
+  decomposition::Holding holding();
 
   void collide();
   collision::KickInterval kicks_of_drift() const;
@@ -189,9 +192,9 @@ private:
   std::vector<std::unique_ptr<forces::Force>> forces_; // in the order of state_.forces
   std::unique_ptr<contact_solver::RestingContacts> resting_;
   std::vector<std::uint8_t> at_rest_; // by particle: does it rest on another one in this kick interval? Empty: none
-  std::unique_ptr<decomposition::Slabs> slabs_; // null unless distributed
-  std::vector<std::size_t> moonlet_indices_;    // in the store; `elsewhere` on another rank
-  std::vector<double> moonlet_wraps_;           // shift in x and y of each by this wrap, m
+  std::unique_ptr<decomposition::Blocks> blocks_; // null unless distributed
+  std::vector<std::size_t> moonlet_indices_;      // in the store; `elsewhere` on another rank
+  std::vector<double> moonlet_wraps_;             // shift in x and y of each by this wrap, m
   TimeSplit split_;
 };
 
