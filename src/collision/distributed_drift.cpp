@@ -212,6 +212,7 @@ bool DriftEngine::collide_distributed(Particles& particles, decomposition::Ghost
   assert(ghosts.own <= particles.size() && ghosts.own + ghosts.near.size() == particles.size());
   const StepContext step = context_of(particles, box, offset, gravity);
   std::vector<Event> first;
+  broad_phase_.lists().set_folds(ghosts.folds);
   ranks.together([&] {
     begin_step(step, false);
     first = solve(step);

@@ -47,6 +47,11 @@ public:
   bool is_within(const Point& position, std::size_t rank, const Point& reach, double offset) const {
     return meet({position, {}}, block(rank), reach, offset);
   }
+  /// Returns the size of the rank's block, m.
+  Point size(std::size_t rank) const {
+    const Block its = block(rank);
+    return {2.0 * its.half_size.x, 2.0 * its.half_size.y};
+  }
   /// Returns the other ranks with blocks that may be within `reach` of the rank's block, ascending.
   std::vector<std::size_t> neighbours(std::size_t rank, const Point& reach, double offset) const;
 

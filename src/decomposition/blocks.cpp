@@ -131,6 +131,14 @@ std::vector<std::uint64_t> Blocks::work(std::size_t particles) const {
   return work;
 }
 
+// Returns how many times the rank's block and its surroundings go into the box.
+cells::Folds Blocks::folds(const Point& surroundings) const {
+  const ShearingBox& box = ghosts_.box;
+  const Point block = grid_.size(ranks_.rank());
+  return {cells::Folds::of(block.x + 2.0 * surroundings.x, box.size_x),
+          cells::Folds::of(block.y + 2.0 * surroundings.y, box.size_y)};
+}
+
 // Changes the number of strips if another one is much cheaper. Returns true if it did.
 bool Blocks::choose_strips() {
   constexpr double much_cheaper = 0.8;
@@ -156,7 +164,7 @@ void Blocks::rebuild(Holding holding, const Epoch& epoch) {
     choose_reach(particles, at); // y may matter now
   grid_.balance(at, work(at.size()), divided, ranks_);
   migrants_ += migrate(holding, at);
-  const std::vector<std::uint32_t> order = cells::order_by_position(particles, ghosts_.box, epoch.offset);
+  const std::vector<std::uint32_t> order = cells::order_by_position(particles, ghosts_.box, epoch.offset, folds({}));
   cells::reorder(particles.bodies, order);
   cells::reorder(particles.ids, order);
   if (particles.rough)
@@ -168,6 +176,7 @@ void Blocks::rebuild(Holding holding, const Epoch& epoch) {
   ghosts_.contacts.assign(particles.size(), 0);
   ghosts_.steps = 0;
   choose_ghosts(particles);
+  ghosts_.folds = folds(reach_);
   min_margin_ = 0.0;
   is_built_ = true;
 }

@@ -77,6 +77,7 @@ private:
   void adapt_growth();
   std::vector<Point> positions(const Particles& particles, double offset) const;
   std::vector<std::uint64_t> work(std::size_t particles) const;
+  cells::Folds folds(const Point& surroundings) const;
   bool choose_strips();
   std::size_t migrate(Holding& holding, const std::vector<Point>& positions) const;
   void choose_reach(const Particles& particles, const std::vector<Point>& positions);

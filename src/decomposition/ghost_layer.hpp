@@ -7,6 +7,7 @@
 // block. src/collision/distributed_drift.cpp says what the ghosts farther out are for.
 #pragma once
 
+#include <keeler/cells/folds.hpp>
 #include <keeler/decomposition/block_grid.hpp>
 #include <keeler/hill/elements.hpp>
 #include <keeler/hill/shearing_box.hpp>
@@ -41,6 +42,7 @@ struct GhostLayer {
   double kappa = 1.0;    ///< epicyclic frequency, in units of the orbital one
   double built_at = 0.0; ///< time of the epoch at which the layer was built, rad
   Epoch epoch;           ///< of the present step
+  cells::Folds folds;    ///< the own particles and the ghosts are in such a part of the box, but for images
 
   std::size_t ghosts() const { return near.size(); }
 

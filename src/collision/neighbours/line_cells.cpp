@@ -38,17 +38,16 @@ int LineCells::level_of(const Line& line) const {
 }
 
 std::size_t LineCells::cell_of(const Line& line, const Level& level) const {
-  const auto part = [](std::int32_t value, std::int64_t parts) {
-    return (static_cast<std::int64_t>(value) + (std::int64_t{1} << 31)) * parts >> 32;
-  };
-  return level.first_cell +
-         static_cast<std::size_t>(part(line.x, level.columns) * level.rows + part(line.y, level.rows));
+  const auto part = [](std::uint32_t folded, std::int64_t parts) { return std::int64_t{folded} * parts >> 32; };
+  return level.first_cell + static_cast<std::size_t>(part(across(line) * folds_.x, level.columns) * level.rows +
+                                                     part(along(line) * folds_.y, level.rows));
 }
 
-void LineCells::build(std::span<const Line> lines, const ShearingBox& box, double offset, double half,
-                      double min_reach) {
+void LineCells::build(std::span<const Line> lines, const ShearingBox& box, double offset, double half, double min_reach,
+                      const cells::Folds& folds) {
   assert(half > 0.0 && (lines.empty() || min_reach > 0.0));
   box_ = box;
+  folds_ = folds;
   half_ = half;
   min_reach_ = min_reach;
   per_metre_x_ = full_turn / box.size_x;
@@ -98,7 +97,7 @@ std::size_t LineCells::lay_out_cells() {
   double two_farthest[2] = {0.0, 0.0};
   for (Level& level : levels_) {
     const double max_cells = std::max(cells_per_particle * static_cast<double>(level.count), min_cells);
-    double columns = box_.size_x / (2.0 * level.reach_x), rows = box_.size_y / level.reach_y;
+    double columns = box_.size_x / folds_.x / (2.0 * level.reach_x), rows = box_.size_y / folds_.y / level.reach_y;
     columns = std::min(columns, std::max(min_cells, columns / std::sqrt(std::max(1.0, columns * rows / max_cells))));
     level.columns = static_cast<std::int64_t>(std::max(1.0, columns));
     level.rows =
@@ -176,22 +175,24 @@ std::size_t LineCells::level_of_cell(std::size_t cell) const {
   return level;
 }
 
-// Returns how far a line's position is outside a cell of the level; the box is periodic.
+// Returns how far a line's position is outside the nearest copy of a cell of the level; the box is periodic.
 LineCells::Distance LineCells::distance(const Line& line, std::size_t cell, const Level& level) const {
-  const auto rows = static_cast<std::size_t>(level.rows);
-  const std::size_t number = cell - level.first_cell;
-  const auto from_middle = [](std::int32_t value, std::size_t index, std::int64_t cells) {
-    const double size = full_turn / static_cast<double>(cells);
-    return static_cast<double>(value) + 0.5 * full_turn - (static_cast<double>(index) + 0.5) * size;
+  const auto number = static_cast<std::int64_t>(cell - level.first_cell);
+  // the nearest copy of the cell across, of all in the periodic box
+  const std::int64_t all = level.columns * folds_.x, here = std::int64_t{across(line)} * all >> 32;
+  std::int64_t off = (number / level.rows - here) % level.columns;
+  off += off > level.columns / 2 ? -level.columns : off < -(level.columns / 2) ? level.columns : 0;
+  const auto beyond = [](double from_middle, std::int64_t cells) {
+    return std::max(0.0, std::fabs(from_middle) - 0.5 * full_turn / static_cast<double>(cells));
   };
-  const auto beyond = [](double off, std::int64_t cells) {
-    const double nearest = off - full_turn * std::rint(off / full_turn);
-    return std::max(0.0, std::fabs(nearest) - 0.5 * full_turn / static_cast<double>(cells));
+  const auto middle = [](std::int64_t index, std::int64_t cells) {
+    return (static_cast<double>(index) + 0.5) * full_turn / static_cast<double>(cells);
   };
-  const double off_x = from_middle(line.x, number / rows, level.columns);
-  const double outward = -std::rint(off_x / full_turn);
-  const double off_y = from_middle(line.y, number % rows, level.rows) - outward * frame_.offset_y;
-  return {beyond(off_x, level.columns) / per_metre_x_, beyond(off_y, level.rows) / per_metre_y_};
+  const std::int64_t outward = here + off < 0 ? -1 : here + off >= all ? 1 : 0;
+  const std::uint32_t y = image_y(along(line), static_cast<int>(outward)) * folds_.y;
+  const double off_y = static_cast<double>(y) - middle(number % level.rows, level.rows);
+  return {beyond(static_cast<double>(across(line)) - middle(here + off, all), all) / per_metre_x_,
+          beyond(off_y - full_turn * std::rint(off_y / full_turn), level.rows) / (per_metre_y_ * folds_.y)};
 }
 
 void LineCells::replace(std::size_t particle, const Line& line) {

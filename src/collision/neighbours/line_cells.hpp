@@ -12,6 +12,7 @@
 
 #include "kernels.hpp"
 
+#include <keeler/cells/folds.hpp>
 #include <keeler/hill/shearing_box.hpp>
 
 #include <algorithm>
@@ -26,8 +27,9 @@ class LineCells {
 public:
   /// Sorts lines into cells. Their instant is when the box has the shear offset `offset` (m), and they are valid for
   /// `half` (rad) before and after. `min_reach` (m): reach of the smallest particle at rest, where levels begin.
-  /// Precondition: lines[k].tag == k.
-  void build(std::span<const Line> lines, const ShearingBox& box, double offset, double half, double min_reach);
+  /// `folds` saves cells if the lines are in a part of the box only. Precondition: lines[k].tag == k.
+  void build(std::span<const Line> lines, const ShearingBox& box, double offset, double half, double min_reach,
+             const cells::Folds& folds = {});
 
   /// True if no two lines can meet through another image than the nearest one.
   bool one_image() const { return one_image_; }
@@ -67,7 +69,7 @@ private:
     std::uint64_t count = 0;
     double reach_x = 0.0, reach_y = 0.0; // largest of its lines, m
     double stray_x = 0.0, stray_y = 0.0; // largest distance of a line's position from its cell, m
-    std::int64_t columns = 1, rows = 1;
+    std::int64_t columns = 1, rows = 1;  // of one copy of the folded box
     std::size_t first_cell = 0;
     std::uint32_t begin = 0, end = 0; // slots
   };
@@ -110,6 +112,7 @@ private:
   }
 
   ShearingBox box_;
+  cells::Folds folds_;
   double half_ = 0.0;
   double min_reach_ = 1.0; // m
   bool one_image_ = false;
@@ -140,26 +143,29 @@ void LineCells::ranges_in(const Level& level, const Rectangle& around, std::uint
   const double metres_y = around.half_y + level.reach_y + level.stray_y + sheared;
   const std::int64_t far_x = static_cast<std::int64_t>(metres_x * per_metre_x_) + 4;
   const std::int64_t far_y = static_cast<std::int64_t>(metres_y * per_metre_y_) + 4;
-  const std::int64_t first = (around.x - far_x) * level.columns >> 32, last = (around.x + far_x) * level.columns >> 32;
+  const std::int64_t all = level.columns * folds_.x; // of the box
+  const std::int64_t first = (around.x - far_x) * all >> 32, last = (around.x + far_x) * all >> 32;
   if (last - first >= level.columns) { // all columns, each once
     cells(level.first_cell, level.first_cell + static_cast<std::size_t>(level.columns * level.rows));
     return;
   }
   for (std::int64_t c = first; c <= last; ++c) {
-    const int boxes = c < 0 ? -1 : c >= level.columns ? 1 : 0; // outward
-    const std::size_t cell = level.first_cell + static_cast<std::size_t>((c - boxes * level.columns) * level.rows);
+    const int boxes = c < 0 ? -1 : c >= all ? 1 : 0; // outward
+    const std::int64_t column = folds_.x == 1 ? c - boxes * all : (c - boxes * all) % level.columns;
+    const std::size_t cell = level.first_cell + static_cast<std::size_t>(column * level.rows);
     if (after == 0 || starts_[cell + static_cast<std::size_t>(level.rows)] > after)
       rows_in(level, cell, image_y(around.y, boxes), far_y, cells);
   }
 }
 
-// Calls cells(first, last) for the cells of one column, which begins with `cell`, within `far` of y in the periodic
-// box.
+// Calls cells(first, last) for the cells of one column, which begins with `cell`, within `far` of y in the periodic,
+// folded box.
 template<class Cells>
 void LineCells::rows_in(const Level& level, std::size_t cell, std::uint32_t y, std::int64_t far,
                         const Cells& cells) const {
-  const std::int64_t rows = level.rows;
-  const std::int64_t low = (std::int64_t{y} - far) * rows >> 32, high = (std::int64_t{y} + far) * rows >> 32;
+  const std::int64_t rows = level.rows, folded_y = y * folds_.y; // modulo 2³²
+  const std::int64_t folded_far = far * folds_.y;
+  const std::int64_t low = (folded_y - folded_far) * rows >> 32, high = (folded_y + folded_far) * rows >> 32;
   const auto of_column = [&](std::int64_t from, std::int64_t to) {
     cells(cell + static_cast<std::size_t>(from), cell + static_cast<std::size_t>(to));
   };

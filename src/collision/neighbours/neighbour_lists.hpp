@@ -46,6 +46,9 @@ public:
     assert(step > 0.0);
   }
 
+  /// Sets the part of the box that the particles are in when lists are rebuilt.
+  void set_folds(const cells::Folds& folds) { references_.set_folds(folds); }
+
   /// Changes the length of the steps to come. All lists are rebuilt.
   void set_step(double step) {
     assert(step > 0.0);

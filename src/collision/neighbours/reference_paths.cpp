@@ -55,7 +55,7 @@ bool ReferencePaths::rebuild(const SearchContext& step, int lifetime, std::vecto
     require_finite(step.particles, radii.not_finite);
   mean_radius_ = radii.sum / static_cast<double>(std::max<std::size_t>(1, count));
   min_radius_ = count ? radii.min : 0.0;
-  cells_.build(std::span(buffer).first(count), step.box, at.offset, half, min_radius_ + skin_);
+  cells_.build(std::span(buffer).first(count), step.box, at.offset, half, min_radius_ + skin_, folds_);
   return cells_.one_image();
 }
 

@@ -16,6 +16,9 @@ namespace keeler::collision {
 
 class ReferencePaths {
 public:
+  /// Sets the part of the box that the particles of the following rebuilds are in.
+  void set_folds(const cells::Folds& folds) { folds_ = folds; }
+
   /// Gives all particles a reference path for `lifetime` steps, the present one included. Returns true if nearest
   /// images suffice for all pairs. `buffer` is overwritten. Throws InvariantError if elements are not finite.
   bool rebuild(const SearchContext& step, int lifetime, std::vector<Line>& buffer);
@@ -50,6 +53,7 @@ public:
 
 private:
   StepInterval lifetime_;
+  cells::Folds folds_;
   double skin_ = 0.0; // m
   double mean_radius_ = 0.0, min_radius_ = 0.0;
   std::vector<Line> lines_;

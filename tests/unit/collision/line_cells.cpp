@@ -39,7 +39,8 @@ struct Sorted {
       lines.push_back(anywhere(std::min(std::pow(random.uniform(), -0.7), largest) / largest));
       lines.back().tag = static_cast<std::uint32_t>(k);
     }
-    cells.build(lines, box, box.size_y * (random.uniform() - 0.5), half, 1.0 / largest);
+    cells.build(lines, box, box.size_y * (random.uniform() - 0.5), half, 1.0 / largest,
+                {seed % 4 == 0 ? 3u : 1u, seed % 4 < 2 ? 2u : 1u}); // lines of several copies in a cell, too
   }
 
   std::size_t below(std::size_t count) {
