@@ -133,7 +133,8 @@ public:
     ++ghosts_.steps;
     journal_.visit_hit([&](std::uint32_t particle) {
       if (particle < ghosts_.own)
-        ghosts_.contacts[particle] += history_.event_count(particle);
+        ghosts_.contacts[particle] = static_cast<std::uint16_t>(
+            std::min<std::uint32_t>(0xffff, ghosts_.contacts[particle] + history_.event_count(particle)));
     });
   }
 

@@ -84,7 +84,8 @@ std::vector<Point> Blocks::positions(const Particles& particles, double offset) 
 }
 
 // Returns the largest excursion of own particles of all ranks; infinite if one is not a number. Collective.
-double Blocks::max_excursion(const Particles& particles, const std::vector<Point>& references) const {
+template<class Position>
+double Blocks::max_excursion(const Particles& particles, const std::vector<Position>& references) const {
   assert(references.size() == particles.size());
   constexpr std::size_t block = 4096;
   std::vector<double> largest((particles.size() + block - 1) / block);
@@ -172,7 +173,9 @@ void Blocks::rebuild(Holding holding, const Epoch& epoch) {
   for (std::vector<Vec3>* rows : holding.rows)
     if (!rows->empty())
       cells::reorder(*rows, order);
-  ghosts_.references = positions(particles, epoch.offset);
+  ghosts_.references.clear();
+  for (const Point& position : positions(particles, epoch.offset))
+    ghosts_.references.push_back(ghosts_.box_point(position));
   ghosts_.contacts.assign(particles.size(), 0);
   ghosts_.steps = 0;
   choose_ghosts(particles);
@@ -227,7 +230,7 @@ void Blocks::choose_ghosts(const Particles& particles) {
   const double offset = ghosts_.epoch.offset;
   for (const std::size_t rank : grid_.neighbours(ranks_.rank(), reach_, offset))
     for (std::size_t k = 0; k < particles.size(); ++k)
-      if (grid_.is_within(ghosts_.references[k], rank, reach_, offset)) {
+      if (grid_.is_within(ghosts_.point(ghosts_.references[k]), rank, reach_, offset)) {
         ghosts_.sent[rank].push_back(static_cast<std::uint32_t>(k));
         ghosts_.is_sent[k] = 1;
         bodies[rank].push_back(particles.bodies[k]);

@@ -82,7 +82,8 @@ private:
   std::size_t migrate(Holding& holding, const std::vector<Point>& positions) const;
   void choose_reach(const Particles& particles, const std::vector<Point>& positions);
   void choose_ghosts(const Particles& particles);
-  double max_excursion(const Particles& particles, const std::vector<Point>& references) const;
+  template<class Position>
+  double max_excursion(const Particles& particles, const std::vector<Position>& references) const;
 
   Communicator ranks_;
   Layout layout_;

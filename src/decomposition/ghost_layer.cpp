@@ -30,7 +30,7 @@ double GhostLayer::excursion(const Point& reference, const Elements& el) const {
 }
 
 Point GhostLayer::near_reach(double max_radius, double lifetime) const {
-  constexpr double rounding = 1e-9;
+  constexpr double rounding = 1e-9; // of references, too
   const double x = 2.0 * margin + 2.0 * max_radius,
                y = 2.0 * aspect * margin + 2.0 * max_radius + box.shear * x * lifetime,
                more = rounding * (box.size_x + box.size_y);

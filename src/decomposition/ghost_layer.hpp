@@ -12,7 +12,9 @@
 #include <keeler/hill/elements.hpp>
 #include <keeler/hill/shearing_box.hpp>
 
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -26,6 +28,11 @@ struct Epoch {
   double step = 0.0;   ///< length of the step, rad
 };
 
+/// A position of the cell in 2⁻³² of the box, which saves half the memory of a Point.
+struct BoxPoint {
+  std::int32_t x = 0, y = 0;
+};
+
 struct GhostLayer {
   std::size_t own = 0;                          ///< number of own particles
   std::vector<std::vector<std::uint32_t>> sent; ///< per rank: ascending indices of the own particles sent to it
@@ -33,8 +40,8 @@ struct GhostLayer {
   std::vector<std::size_t> first;    ///< ghosts from rank r are at [first[r], first[r + 1]), in the order of its `sent`
   std::vector<std::size_t> partners; ///< ranks that ghosts are sent to or received from, ascending
   std::vector<std::uint8_t> near;    ///< per ghost, from the first on: may an own particle touch it?
-  std::vector<Point> references;     ///< position of each own particle when the layer was built
-  std::vector<std::uint32_t> contacts; ///< of each own particle since then: counted by the drift
+  std::vector<BoxPoint> references;  ///< position of each own particle when the layer was built
+  std::vector<std::uint16_t> contacts; ///< of each own particle since then: counted by the drift
   std::uint32_t steps = 0;             ///< since then, likewise
   double margin = 0.0;                 ///< largest distance from the reference along x, and half of that along y, m
   bool has_rows = false;               ///< false: blocks are as long as the box, so that y does not matter
@@ -63,11 +70,23 @@ struct GhostLayer {
     assert(index < own);
     return excursion(references[index], el) <= margin;
   }
+  double excursion(const BoxPoint& reference, const Elements& el) const { return excursion(point(reference), el); }
+
+  Point point(const BoxPoint& at) const { return {at.x * (box.size_x / turn), at.y * (box.size_y / turn)}; }
+  BoxPoint box_point(const Point& in_cell) const {
+    const auto fraction = [](double position, double size) {
+      return static_cast<std::int32_t>(std::clamp(std::nearbyint(position / size * turn), -0.5 * turn, 0.5 * turn - 1));
+    };
+    return {fraction(in_cell.x, box.size_x), fraction(in_cell.y, box.size_y)};
+  }
 
   /// Returns the position in the plane at the epoch.
   Point position(const Elements& el) const {
     return {el.guiding_x - el.e_cos, el.guiding_y + (2.0 / kappa) * el.e_sin};
   }
+
+private:
+  static constexpr double turn = 4294967296.0; // 2³²
 };
 
 } // namespace keeler::decomposition
