@@ -88,7 +88,7 @@ std::size_t BlockGrid::best_strips(const Point& reach) const {
   return best;
 }
 
-void BlockGrid::balance(std::span<const Point> positions, std::span<const std::uint64_t> weights, bool always,
+void BlockGrid::balance(std::span<const Point> positions, std::span<const std::uint64_t> weights,
                         const Communicator& ranks) {
   assert(positions.size() == weights.size());
   std::vector<std::uint64_t> counts(x_bins + ranks_);
@@ -100,7 +100,7 @@ void BlockGrid::balance(std::span<const Point> positions, std::span<const std::u
   const auto blocks = std::span(counts).subspan(x_bins);
   const auto all = static_cast<double>(std::accumulate(blocks.begin(), blocks.end(), std::uint64_t{0})),
              largest = static_cast<double>(*std::max_element(blocks.begin(), blocks.end()));
-  if (!always && largest * static_cast<double>(ranks_) <= max_imbalance * all)
+  if (largest * static_cast<double>(ranks_) <= max_imbalance * all)
     return;
   x_bounds_ = bounds_of(std::span(counts).first(x_bins), first_, box_.size_x);
   if (!has_rows())

@@ -37,9 +37,8 @@ public:
   std::size_t best_strips(const Point& reach) const;
 
   /// Moves the bounds of the blocks so that the weights of all ranks' particles are equal. Does nothing if the largest
-  /// weight of a block is near the mean, unless `always`. Collective.
-  void balance(std::span<const Point> positions, std::span<const std::uint64_t> weights, bool always,
-               const Communicator& ranks);
+  /// weight of a block is near the mean. Collective.
+  void balance(std::span<const Point> positions, std::span<const std::uint64_t> weights, const Communicator& ranks);
 
   /// Returns the rank of the block that contains a position of the cell.
   std::size_t owner(const Point& position) const;

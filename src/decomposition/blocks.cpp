@@ -67,7 +67,7 @@ void Blocks::distribute(Holding holding) {
   const std::vector<Point> at = positions(holding.particles, 0.0);
   choose_reach(holding.particles, at);
   grid_.divide(layout_.strips > 0 ? layout_.strips : grid_.best_strips(reach_));
-  grid_.balance(at, std::vector<std::uint64_t>(at.size(), 1), true, ranks_);
+  grid_.balance(at, std::vector<std::uint64_t>(at.size(), 1), ranks_);
   migrate(holding, at);
 }
 
@@ -160,10 +160,9 @@ void Blocks::rebuild(Holding holding, const Epoch& epoch) {
   ghosts_.built_at = epoch.time;
   const std::vector<Point> at = positions(particles, epoch.offset);
   choose_reach(particles, at);
-  const bool divided = choose_strips();
-  if (divided)
+  if (choose_strips())
     choose_reach(particles, at); // y may matter now
-  grid_.balance(at, work(at.size()), divided, ranks_);
+  grid_.balance(at, work(at.size()), ranks_);
   migrants_ += migrate(holding, at);
   const std::vector<std::uint32_t> order = cells::order_by_position(particles, ghosts_.box, epoch.offset, folds({}));
   cells::reorder(particles.bodies, order);

@@ -1,6 +1,7 @@
 // counts SCENE STEPS [KEY=VALUE ...]: makes steps of a scene on all ranks and prints what a rank holds and sends: the
 // mean over the ranks, and the largest. All numbers are counts, so they are right on a machine with fewer processors
 // than ranks.
+#include <keeler/collision/costs.hpp>
 #include <keeler/comm/communicator.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/decomposition/blocks.hpp>
@@ -49,6 +50,7 @@ void count(const Communicator& ranks, int argc, char** argv) {
   simulation.advance(); // the first layer has no counted work
   const decomposition::Blocks& blocks = *simulation.blocks();
   const comm::ExchangeCosts before = comm::exchange_costs();
+  const collision::DriftCosts costs = simulation.drift().costs();
   const collision::CollisionTally contacts_before = simulation.state().collisions;
   const std::uint64_t rebuilds = blocks.rebuilds(), migrants = blocks.migrants();
   double own = 0.0, ghosts = 0.0, near = 0.0, partners = 0.0;
@@ -76,6 +78,9 @@ void count(const Communicator& ranks, int argc, char** argv) {
   table.add("bytes sent per step", each(after.bytes - before.bytes));
   table.add("messages sent per step", each(after.messages - before.messages));
   table.add("collective calls per step", each(after.collectives - before.collectives));
+  const collision::DriftCosts costs_after = simulation.drift().costs();
+  table.add("pairs of lines tested per step", each(costs_after.pairs_tested - costs.pairs_tested));
+  table.add("repeated steps", static_cast<double>(costs_after.repeated_steps - costs.repeated_steps));
   table.add("rebuilt layers", static_cast<double>(blocks.rebuilds() - rebuilds));
   table.add("particles sent to new owners per step", each(blocks.migrants() - migrants));
 }

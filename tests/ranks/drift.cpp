@@ -130,28 +130,34 @@ TEST_CASE("ranks: the same bits as the plain drift, loose and dense, for steps f
     }
 }
 
-// Without ghosts beyond the near ones, and with almost no margin, nearly every step is repeated.
+// Without ghosts beyond the near ones, and with almost no margin, many steps are repeated. Blocks need a larger box, in
+// which not all particles are near.
 TEST_CASE("ranks: a step is repeated if ghosts leave their owners' paths, with the bits of the plain drift") {
+  const std::size_t ranks = keeler_test::launched().size();
   for (const std::size_t strips : some_strips()) {
+    const bool is_large = strips > 0;
     std::uint64_t again = 0, rounds = 0, strayed = 0;
     for (const double step : {2e-3, 1e-2, 4e-2})
       for (const double growth : {1.0, 1.5}) {
+        if (is_large && (growth > 1.0 || step > 1e-2))
+          continue;
         CAPTURE(step);
         Scenario s;
         s.step = two_pi * step;
-        s.count = 200;
-        s.filling = 0.45, s.optical_depth = 1.0;
-        const Walk walked = walk(s, 7, 25, {.growth = growth, .rows_beyond = 0.0, .strips = strips});
+        s.count = is_large ? 400 : 200;
+        s.filling = 0.45, s.optical_depth = is_large ? 0.7 : 1.0;
+        const Walk walked = walk(s, 7, 25, {.growth = growth, .rows_beyond = 0.0, .strips = is_large ? strips : ranks});
         again += walked.costs.repeated_steps;
         rounds += walked.costs.repeated_rounds;
         strayed += walked.costs.steps - 25;
       }
     MESSAGE(strips, " strips: ", again, " steps repeated in ", rounds, " rounds, ", strayed,
             " with wider ghost layers");
-    const bool many = keeler_test::launched().distributed();
-    CHECK(again >= (many ? 10 : 0));
-    CHECK(rounds > (many ? again : 0));
-    CHECK(strayed >= (many ? 1 : 0));
+    if (ranks == 1)
+      continue;
+    CHECK(again >= (is_large ? 1 : 10));
+    CHECK(rounds >= again);
+    CHECK((is_large || strayed >= 1));
   }
 }
 
@@ -182,12 +188,12 @@ TEST_CASE(
 // In a large box most particles are no ghosts, and some move from block to block.
 TEST_CASE("ranks: the bits of the plain drift in a box much larger than the ghost layer") {
   Scenario s;
-  s.count = 900;
+  s.count = 400;
   s.step = two_pi * 2e-3;
-  s.optical_depth = 0.4;
+  s.optical_depth = 0.3;
   for (const std::size_t strips : some_strips()) {
     CAPTURE(strips);
-    const Walk walked = walk(s, 11, 60, {.growth = 4.0, .rows_beyond = 1.0, .strips = strips});
+    const Walk walked = walk(s, 11, 25, {.growth = 3.0, .rows_beyond = 1.0, .strips = strips});
     CHECK(walked.contacts > 20);
     if (keeler_test::launched().distributed()) {
       CHECK(walked.ghosts > 0);

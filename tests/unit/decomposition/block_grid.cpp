@@ -36,7 +36,7 @@ const Division divisions[] = {{1, 1}, {2, 2}, {2, 1}, {4, 2}, {7, 3}, {12, 4}, {
 BlockGrid grid_of(const Division& division, const std::vector<Point>& at) {
   BlockGrid grid(patch, division.ranks);
   grid.divide(division.strips);
-  grid.balance(at, std::vector<std::uint64_t>(at.size(), 1), true, {});
+  grid.balance(at, std::vector<std::uint64_t>(at.size(), 1), {});
   return grid;
 }
 
@@ -62,7 +62,7 @@ TEST_CASE("blocks of equal weight: each position has one owner, and no rank much
     CAPTURE(division.strips);
     BlockGrid grid(patch, division.ranks);
     grid.divide(division.strips);
-    grid.balance(at, weights, false, {});
+    grid.balance(at, weights, {});
     CHECK(grid.strips() == division.strips);
     std::vector<std::uint64_t> loads(division.ranks);
     for (std::size_t k = 0; k < at.size(); ++k) {
