@@ -17,6 +17,7 @@
 // repetition makes at least one more contact right. When nothing new is reported and no near ghost differs, each rank
 // has found every contact of its own particles on paths that their owners confirm, which is the true history. (Within
 // the margins, which are checked last: the first contact that leads beyond them is right too, so that is seen.)
+#include "drift_audit.hpp"
 #include "drift_engine.hpp"
 #include "path_journal.hpp"
 #include "reported_orbits.hpp"
@@ -52,7 +53,7 @@ public:
   DistributedStep(const StepContext& step, StepHistory& history, BroadPhase& broad_phase, StepOutcome& outcome,
                   DriftCosts& costs, decomposition::GhostLayer& ghosts, const Communicator& ranks)
       : step_(step), history_(history), broad_phase_(broad_phase), outcome_(outcome), costs_(costs), ghosts_(ghosts),
-        ranks_(ranks), journal_(step, history, ghosts) {}
+        ranks_(ranks), journal_(step, history, ghosts), gave_up_first_(outcome.gave_up) {}
 
   /// Carries out all contacts by work(counter) and journals them. Keeps the exception of a broken invariant, since the
   /// history may be wrong.
@@ -113,6 +114,7 @@ public:
     history_.begin_step(step_.particles.size(), step_.begin);
     journal_.undo(broad_phase_);
     outcome_.clear_contacts();
+    outcome_.gave_up = gave_up_first_;
   }
 
   /// Adds what the step did on all ranks. Throws on all ranks if the step failed on one.
@@ -124,9 +126,10 @@ public:
     if (step_.record_taker)
       gather_records();
     ranks_.merge({&outcome_.energy_lost, &outcome_.momentum_flux, &outcome_.azimuthal_gain, &outcome_.kick_work});
-    outcome_.add_sums_to(tally);
-    std::uint64_t counts[] = {tally_.fast, tally_.slow, tally_.unresolved};
+    std::uint64_t counts[] = {tally_.fast, tally_.slow, tally_.unresolved, outcome_.gave_up};
     ranks_.sum(counts);
+    outcome_.gave_up = counts[3];
+    outcome_.add_sums_to(tally);
     tally.fast += counts[0];
     tally.slow += counts[1];
     tally.unresolved += counts[2];
@@ -198,6 +201,7 @@ private:
   decomposition::GhostLayer& ghosts_;
   const Communicator& ranks_;
   PathJournal journal_;
+  std::uint64_t gave_up_first_;      // of the searches before the first contact
   comm::Parcels sent_;               // reports, to each rank
   std::vector<PathReport> received_; // of the ghosts, in their order
   CollisionTally tally_;             // of the last attempt
@@ -209,14 +213,16 @@ private:
 bool DriftEngine::collide_distributed(Particles& particles, decomposition::GhostLayer& ghosts,
                                       const Communicator& ranks, const ShearingBox& box, double offset,
                                       CollisionTally& tally, const KickInterval& gravity) {
-  assert(finder().exact() && !(observer_ && observer_->wants_events()) && !audit_);
+  assert(!(observer_ && observer_->wants_events()));
   assert(ghosts.own <= particles.size() && ghosts.own + ghosts.near.size() == particles.size());
   const StepContext step = context_of(particles, box, offset, gravity);
   std::vector<Event> first;
   broad_phase_.lists().set_folds(ghosts.folds);
   ranks.together([&] {
     begin_step(step, false);
-    first = solve(step);
+    if (audit_)
+      audit_begin(*audit_, step, finder_step_.straight_line, candidates_);
+    first = solve(step, ghosts.own);
   });
   DistributedStep distributed(step, history_, broad_phase_, outcome_, costs_, ghosts, ranks);
   distributed.attempt([&](const ContactCounter& counter) {
@@ -234,6 +240,8 @@ bool DriftEngine::collide_distributed(Particles& particles, decomposition::Ghost
   // of two contacts at the very same instant the repetitions may not find which comes first: then each rank needs
   // ghosts of all particles
   const bool done = distributed.is_right() && distributed.within_margins();
+  if (done && audit_)
+    audit_end(*audit_, step, finder_step_.straight_line, broad_phase_, history_, outcome_.dirty);
   if (done)
     distributed.finish(tally);
   else

@@ -67,8 +67,9 @@ struct FirstContacts {
   bool has_not_a_number = false;
 };
 
-// Asks the finder about some candidates at once.
-void search_some(const StepContext& step, std::span<const Candidate> candidates, FirstContacts& found) {
+// Asks the finder about some candidates at once. `own`: see ContactCounter.
+void search_some(const StepContext& step, std::span<const Candidate> candidates, std::size_t own,
+                 FirstContacts& found) {
   assert(candidates.size() <= searches_together);
   std::array<finders::Query, searches_together> queries;
   std::array<finders::FinderResult, searches_together> results;
@@ -87,7 +88,7 @@ void search_some(const StepContext& step, std::span<const Candidate> candidates,
       step.watcher->searched(queries[k], result);
     if (result.contact())
       found.events.push_back({result.time, ids[c.low], ids[c.high], c.image, c.low, c.high, 0, 0});
-    found.gave_up += result.exit == finders::FinderExit::gave_up;
+    found.gave_up += result.exit == finders::FinderExit::gave_up && c.low < own;
     found.has_not_a_number |= result.exit == finders::FinderExit::not_a_number;
   }
 }
@@ -117,7 +118,7 @@ void DriftEngine::collide(Particles& particles, const ShearingBox& box, double o
   begin_step(step, undisturbed);
   if (audit_)
     audit_begin(*audit_, step, finder_step_.straight_line, candidates_);
-  const std::vector<Event> first = solve(step);
+  const std::vector<Event> first = solve(step, ContactCounter::all_particles);
   {
     const Stopwatch stopwatch(costs_.events);
     const ContactCounter counter{outcome_, tally, costs_};
@@ -198,13 +199,13 @@ void DriftEngine::find_candidates(const StepContext& step) {
 }
 
 // Returns the first contact of each candidate pair. Blocks are joined in order, so threads do not matter.
-std::vector<Event> DriftEngine::solve(const StepContext& step) {
+std::vector<Event> DriftEngine::solve(const StepContext& step, std::size_t own) {
   const Stopwatch stopwatch(costs_.solve);
   std::vector<FirstContacts> found(candidates_.size());
   const auto search_block = [&](std::size_t b) {
     const std::span<const Candidate> block = candidates_[b];
     for (std::size_t k = 0; k < block.size() && !interrupted(); k += searches_together)
-      search_some(step, block.subspan(k, std::min(searches_together, block.size() - k)), found[b]);
+      search_some(step, block.subspan(k, std::min(searches_together, block.size() - k)), own, found[b]);
   };
   if (step.watcher)
     for (std::size_t b = 0; b < found.size(); ++b)

@@ -58,7 +58,7 @@ private:
                          const KickInterval& gravity) const;
   void begin_step(const StepContext& step, bool undisturbed);
   void find_candidates(const StepContext& step);
-  std::vector<Event> solve(const StepContext& step);
+  std::vector<Event> solve(const StepContext& step, std::size_t own);
   bool carry_out_in_domains(const StepContext& step, const std::vector<Event>& first, const ContactCounter& counter);
   void count_contacts(const StepContext& step, const ContactCounter& counter);
   template<OrbitStore Orbits>

@@ -68,7 +68,7 @@ public:
     for (std::size_t k = 0; k < queries.size(); ++k) {
       if (step_.watcher)
         step_.watcher->searched(queries[k], results[k]);
-      counter_.outcome.gave_up += results[k].exit == finders::FinderExit::gave_up;
+      counter_.outcome.gave_up += results[k].exit == finders::FinderExit::gave_up && queries[k].low < counter_.own;
     }
   }
 

@@ -116,6 +116,10 @@ void fail_ranks(ExitCode code) {
   finish_ranks();
 }
 
+bool all_ranks_failed() {
+  return error_is_common;
+}
+
 bool another_rank_reports() {
   return another_reports;
 }
@@ -237,6 +241,31 @@ std::vector<std::byte> Communicator::gather(std::vector<std::byte> bytes) const 
   record_bytes(std::max(bytes.size(), all.size()));
   MPI_Gatherv(bytes.data(), own_size, MPI_BYTE, all.data(), sizes.data(), offsets.data(), MPI_BYTE, 0, MPI_COMM_WORLD);
   return all;
+}
+
+void Communicator::gather_on_all(std::span<const std::byte> rows, std::size_t row_size,
+                                 const std::function<std::byte*(std::size_t)>& allocate) const {
+  assert(row_size > 0 && rows.size() % row_size == 0);
+  const Stopwatch watch(costs.seconds);
+  ++costs.collectives;
+  const int own = as_int(rows.size() / row_size);
+  std::vector<int> counts(size_, own), offsets(size_);
+  if (distributed())
+    MPI_Allgather(&own, 1, MPI_INT, counts.data(), 1, MPI_INT, MPI_COMM_WORLD);
+  std::exclusive_scan(counts.begin(), counts.end(), offsets.begin(), 0);
+  assert(offsets.back() <= std::numeric_limits<int>::max() - counts.back()); // MPI counts in int
+  const auto all = static_cast<std::size_t>(offsets.back() + counts.back());
+  std::byte* const to = allocate(all);
+  record_bytes(all * row_size);
+  if (!distributed()) {
+    std::copy(rows.begin(), rows.end(), to);
+    return;
+  }
+  MPI_Datatype row = MPI_DATATYPE_NULL;
+  MPI_Type_contiguous(as_int(row_size), MPI_BYTE, &row);
+  MPI_Type_commit(&row);
+  MPI_Allgatherv(rows.data(), own, row, to, counts.data(), offsets.data(), row, MPI_COMM_WORLD);
+  MPI_Type_free(&row);
 }
 
 void Communicator::sum(std::span<std::uint64_t> numbers) const {

@@ -2,6 +2,7 @@
 #include <keeler/comm/communicator.hpp>
 #include <keeler/core/exact_sum.hpp>
 
+#include <algorithm>
 #include <cassert>
 #include <cstdlib>
 #include <cstring>
@@ -50,6 +51,11 @@ void Communicator::exchange(std::span<const Blocks> sent, std::span<const Blocks
   for (std::size_t k = 0; k < from.count; ++k)
     std::memmove(to.first + k * to.stride, from.first + k * from.stride, from.size);
 }
+void Communicator::gather_on_all(std::span<const std::byte> rows, std::size_t row_size,
+                                 const std::function<std::byte*(std::size_t)>& allocate) const {
+  assert(row_size > 0 && rows.size() % row_size == 0);
+  std::copy(rows.begin(), rows.end(), allocate(rows.size() / row_size));
+}
 void Communicator::sum(std::span<std::uint64_t>) const {}
 void Communicator::merge(std::initializer_list<ExactSum*>) const {}
 double Communicator::max(double number) const {
@@ -69,6 +75,9 @@ const ExchangeCosts& exchange_costs() {
 }
 void finish_ranks() {}
 void fail_ranks(ExitCode) {}
+bool all_ranks_failed() {
+  return true;
+}
 bool another_rank_reports() {
   return false;
 }

@@ -27,6 +27,22 @@ void RestingContacts::note(const Particles& particles, const collision::SlowPair
     noted_.push_back({{low, high}, pair.low, pair.high});
 }
 
+void RestingContacts::share_noted(const Communicator& ranks) {
+  noted_ = ranks.gather_on_all(std::span<const Noted>(noted_));
+  indices_known_ = false;
+}
+
+std::vector<std::uint64_t> RestingContacts::member_ids(const RestingState& state) const {
+  std::vector<std::uint64_t> ids;
+  for (const RestingPair& pair : state.pairs)
+    ids.insert(ids.end(), {pair.low, pair.high});
+  for (const Noted& noted : noted_)
+    ids.insert(ids.end(), {noted.ids.low, noted.ids.high});
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
 void RestingContacts::persist(RestingState& state, const RestingStep& step,
                               const std::optional<collision::Friction>& friction, CollisionTally& tally) {
   if (!work_)

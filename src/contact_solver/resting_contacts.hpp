@@ -10,6 +10,7 @@
 
 #include <keeler/collision/drift.hpp>
 #include <keeler/collision/friction.hpp>
+#include <keeler/comm/communicator.hpp>
 #include <keeler/contact_solver/resting_state.hpp>
 #include <keeler/hill/shearing_box.hpp>
 #include <keeler/particles/store.hpp>
@@ -66,6 +67,12 @@ public:
   /// the half kicks that begin the next interval have been applied.
   void persist_second_half(RestingState& state, const RestingStep& step, CollisionTally& tally,
                            std::span<std::uint8_t> at_rest);
+
+  /// Replaces the pairs recorded on each rank by those of all ranks; collective. From then on the order in memory of
+  /// the particles that were recorded does not matter.
+  void share_noted(const Communicator& ranks);
+  /// Returns the ids, in increasing order, of all particles that persist() and persist_second_half() read and change.
+  std::vector<std::uint64_t> member_ids(const RestingState& state) const;
 
   /// Tells that the particles' order in memory has changed.
   void reordered() { indices_known_ = false; }

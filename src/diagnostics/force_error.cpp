@@ -9,19 +9,35 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <utility>
+#include <map>
 
 namespace keeler::diagnostics {
 namespace {
 
-// Draws `count` of the candidates by a partial shuffle (Fisher and Yates).
-void draw(std::vector<std::size_t> candidates, std::size_t count, RandomStream& random,
-          std::vector<std::size_t>& drawn) {
-  for (std::size_t k = 0; k < std::min(count, candidates.size()); ++k) {
-    const auto left = static_cast<double>(candidates.size() - k);
-    std::swap(candidates[k], candidates[k + static_cast<std::size_t>(random.uniform() * left)]);
-    drawn.push_back(candidates[k]);
+// Draws places in a list of `candidates` by a partial shuffle (Fisher and Yates), which keeps what it has moved alone.
+std::vector<std::size_t> draw_places(std::size_t candidates, std::size_t count, RandomStream& random) {
+  std::map<std::size_t, std::size_t> moved;
+  const auto at = [&](std::size_t place) {
+    const auto found = moved.find(place);
+    return found == moved.end() ? place : found->second;
+  };
+  std::vector<std::size_t> drawn;
+  for (std::size_t k = 0; k < std::min(count, candidates); ++k) {
+    const std::size_t other = k + static_cast<std::size_t>(random.uniform() * static_cast<double>(candidates - k));
+    drawn.push_back(at(other));
+    moved[other] = at(k);
   }
+  return drawn;
+}
+
+void draw(const std::vector<std::size_t>& candidates, std::size_t count, RandomStream& random,
+          std::vector<std::size_t>& drawn) {
+  for (const std::size_t place : draw_places(candidates.size(), count, random))
+    drawn.push_back(candidates[place]);
+}
+
+RandomStream sample_stream() {
+  return {1, RandomPurpose::sample, 0};
 }
 
 // Returns the distance of a particle from the cell's edges x < 0, x > 0, y < 0, y > 0, m.
@@ -58,7 +74,7 @@ ForceSample draw_force_sample(const gravity::GravityProblem& problem, std::size_
                               double edge_width) {
   assert(problem.ids.size() == problem.positions.size());
   ForceSample sample;
-  RandomStream random(1, RandomPurpose::sample, 0);
+  RandomStream random = sample_stream();
   const std::vector<std::uint32_t> order = particles::order_by_id(problem.ids);
   std::vector<std::size_t> all(order.begin(), order.end());
   std::array<std::vector<std::size_t>, 4> beside;
@@ -69,14 +85,19 @@ ForceSample draw_force_sample(const gravity::GravityProblem& problem, std::size_
       if (depth[edge] < edge_width)
         beside[edge].push_back(k);
   }
-  draw(std::move(all), uniform, random, sample.targets);
+  draw(all, uniform, random, sample.targets);
   sample.uniform = sample.targets.size();
   for (std::size_t edge = 0; edge < 4; ++edge) {
     const std::size_t before = sample.targets.size();
-    draw(std::move(beside[edge]), at_each_edge, random, sample.targets);
+    draw(beside[edge], at_each_edge, random, sample.targets);
     sample.edges[edge] = sample.targets.size() - before;
   }
   return sample;
+}
+
+std::vector<std::size_t> draw_force_places(std::size_t count, std::size_t uniform) {
+  RandomStream random = sample_stream();
+  return draw_places(count, uniform, random);
 }
 
 ForceErrors force_errors(const ForceSample& sample, std::span<const Vec3> exact, std::span<const Vec3> accelerations) {

@@ -28,6 +28,10 @@ struct ForceSample {
 ForceSample draw_force_sample(const gravity::GravityProblem& problem, std::size_t uniform, std::size_t at_each_edge,
                               double edge_width);
 
+/// Returns the places, in the order of the ids of `count` particles, of the uniform sample that draw_force_sample()
+/// draws.
+std::vector<std::size_t> draw_force_places(std::size_t count, std::size_t uniform);
+
 /// Errors relative to the rms |a| of the uniform sample; 0 if that is empty.
 struct ForceErrors {
   double rms = 0.0;                      ///< of |δa|

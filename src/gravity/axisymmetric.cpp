@@ -144,10 +144,12 @@ Stencil AxisymmetricSolver::Mesh::stencil_at(double x, double length) const {
   return {node + nodes - (order - 1), spline_weights(at - static_cast<double>(node))};
 }
 
-// Spreads the masses in fixed point: sums of integers have the same bits in any order and on any number of threads.
+// Spreads the masses in fixed point: sums of integers have the same bits in any order and on any number of threads and
+// ranks.
 void AxisymmetricSolver::Mesh::spread(const GravityProblem& problem) {
   const std::size_t count = problem.positions.size();
-  const double max_total = *std::max_element(problem.masses.begin(), problem.masses.end()) * static_cast<double>(count);
+  const double largest = largest_of(count, [&](std::size_t k) { return problem.masses[k]; });
+  const double max_total = problem.ranks.max(largest) * static_cast<double>(problem.ranks.sum(count));
   const int exponent = 61 - std::ilogb(max_total); // no node has more than half of the total
   const double unit = std::ldexp(1.0, exponent), length = problem.box.size_x;
   fixed.resize(static_cast<std::size_t>(threads()));
@@ -159,12 +161,13 @@ void AxisymmetricSolver::Mesh::spread(const GravityProblem& problem) {
     for (std::size_t j = 0; j < order; ++j)
       mesh[(stencil.first + j) & (nodes - 1)] += std::llrint(problem.masses[k] * unit * stencil.weights[j]);
   });
-  for (std::size_t i = 0; i < nodes; ++i) {
-    std::int64_t sum = 0;
-    for (const std::vector<std::int64_t>& mesh : fixed)
-      sum += mesh[i];
-    real[i] = std::ldexp(static_cast<double>(sum), -exponent);
-  }
+  std::vector<std::int64_t>& sums = fixed.front();
+  for (std::size_t thread = 1; thread < fixed.size(); ++thread)
+    for (std::size_t i = 0; i < nodes; ++i)
+      sums[i] += fixed[thread][i];
+  problem.ranks.sum(std::span(reinterpret_cast<std::uint64_t*>(sums.data()), nodes)); // the ranks' sums, modulo 2⁶⁴
+  for (std::size_t i = 0; i < nodes; ++i)
+    real[i] = std::ldexp(static_cast<double>(sums[i]), -exponent);
 }
 
 // Returns the transform of the spline at wave n ≥ 1.
@@ -176,9 +179,11 @@ double AxisymmetricSolver::Mesh::spline_transform(std::size_t n) const {
 
 // Sets waves[n] to S_n × area, up to the phase of half a spline.
 void AxisymmetricSolver::Mesh::transform(const GravityProblem& problem) {
-  if (!std::all_of(problem.positions.begin(), problem.positions.end(), [](const Vec3& p) { return p.allFinite(); }))
-    throw InvariantError("the position of a particle is not finite; take a shorter time.step");
-  prepare(problem.box);
+  problem.ranks.together([&] {
+    if (!std::all_of(problem.positions.begin(), problem.positions.end(), [](const Vec3& p) { return p.allFinite(); }))
+      throw InvariantError("the position of a particle is not finite; take a shorter time.step");
+    prepare(problem.box);
+  });
   spread(problem);
   fftw_execute(forward.get());
   for (std::size_t n = 1; n <= modes; ++n)
@@ -194,7 +199,7 @@ AxisymmetricSolver::~AxisymmetricSolver() = default;
 void AxisymmetricSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) {
   const std::size_t count = problem.positions.size();
   assert(accelerations.size() == count && problem.masses.size() == count);
-  if (count == 0)
+  if (problem.ranks.sum(count) == 0)
     return;
   Mesh& mesh = *mesh_;
   mesh.transform(problem);
@@ -219,7 +224,7 @@ void AxisymmetricSolver::accelerate(const GravityProblem& problem, std::span<Vec
 
 // Sums ½ ∫ Σ Φ dA wave by wave.
 GravityEnergy AxisymmetricSolver::energy(const GravityProblem& problem) {
-  if (problem.positions.empty())
+  if (problem.ranks.sum(problem.positions.size()) == 0)
     return {};
   Mesh& mesh = *mesh_;
   mesh.transform(problem);

@@ -1,7 +1,8 @@
 #include <keeler/gravity/direct.hpp>
 
+#include "direct_sources.hpp"
 #include "far_images.hpp"
-#include "single.hpp"
+#include "gathered.hpp"
 
 #include <keeler/core/parallel.hpp>
 #include <keeler/core/threads.hpp>
@@ -31,71 +32,12 @@ Ordered ordered(const GravityProblem& problem, double offset) {
   return result;
 }
 
-// Consecutive sources as targets, at most TargetBlock::capacity.
-struct Targets {
-  const PointSource* first;
-  std::size_t count;
-};
-
-// Writes Σ m d / |d|³ over all sources and their images. An image at +shift attracts as the cell does a target at
-// −shift.
-void sum_in_double(Targets targets, const std::vector<Vec3>& shifts, const AttractionKernels& kernels,
-                   const std::vector<PointSource>& sources, Vec3* sums) {
-  assert(targets.count <= TargetBlock::capacity);
-  TargetBlock block{};
-  for (const Vec3& shift : shifts) {
-    for (std::size_t k = 0; k < targets.count; ++k) {
-      block.x[k] = targets.first[k].x - shift.x();
-      block.y[k] = targets.first[k].y - shift.y();
-      block.z[k] = targets.first[k].z;
-    }
-    kernels.points(block, targets.count, sources.data(), sources.size());
-  }
-  for (std::size_t k = 0; k < targets.count; ++k)
-    sums[k] = {block.ax[k], block.ay[k], block.az[k]};
-}
-
-// Sources in single precision, masses in units of the largest.
-struct SingleSources {
-  std::vector<SinglePoint> points;
-  double mass_unit = 0.0;
-};
-
-SingleSources in_single(const std::vector<PointSource>& sources) {
-  SingleSources single;
-  for (const PointSource& s : sources)
-    single.mass_unit = std::max(single.mass_unit, s.mass);
-  const double unit = single.mass_unit > 0.0 ? 1.0 / single.mass_unit : 0.0;
-  for (const PointSource& s : sources)
-    single.points.push_back(single_point({s.x, s.y, s.z, unit * s.mass}));
-  return single;
-}
-
-// As sum_in_double(), in single precision.
-void sum_in_single(Targets targets, const std::vector<Vec3>& shifts, const AttractionKernels& kernels,
-                   const SingleSources& sources, Vec3* sums) {
-  assert(targets.count <= SingleTargetBlock::capacity);
-  SingleTargetBlock block{};
-  const PointRange all{0, static_cast<std::uint32_t>(sources.points.size())};
-  for (const Vec3& shift : shifts) {
-    for (std::size_t k = 0; k < targets.count; ++k) {
-      split_position(targets.first[k].x - shift.x(), block.x[k], block.x_low[k]);
-      split_position(targets.first[k].y - shift.y(), block.y[k], block.y_low[k]);
-      split_position(targets.first[k].z, block.z[k], block.z_low[k]);
-    }
-    kernels.points_single(block, targets.count, sources.points.data(), &all, 1);
-  }
-  for (std::size_t k = 0; k < targets.count; ++k)
-    sums[k] = sources.mass_unit * Vec3(block.ax[k], block.ay[k], block.az[k]);
-}
-
 // Returns the attraction per G of all sources and their near images on each target.
 std::vector<Vec3> near_attractions(const std::vector<PointSource>& sources, const std::vector<PointSource>& targets,
                                    const std::vector<Vec3>& shifts, const AttractionKernels& kernels,
                                    Precision precision) {
-  const bool single = precision == Precision::single_precision;
-  const SingleSources single_sources = single ? in_single(sources) : SingleSources{};
-  std::vector<Vec3> result(targets.size());
+  const DirectSources prepared(sources, largest_mass(sources), precision);
+  std::vector<Vec3> result(targets.size(), Vec3::Zero());
   // a sample has fewer targets than a block holds: then each thread has some
   constexpr std::size_t capacity = TargetBlock::capacity, lanes = 16;
   const std::size_t shared = targets.size() / static_cast<std::size_t>(threads());
@@ -103,13 +45,13 @@ std::vector<Vec3> near_attractions(const std::vector<PointSource>& sources, cons
   parallel_for((targets.size() + block_size - 1) / block_size,
                [&](std::size_t block) {
                  const std::size_t first = block * block_size;
-                 const Targets some{&targets[first], std::min(block_size, targets.size() - first)};
-                 if (single)
-                   sum_in_single(some, shifts, kernels, single_sources, &result[first]);
-                 else
-                   sum_in_double(some, shifts, kernels, sources, &result[first]);
+                 const std::size_t count = std::min(block_size, targets.size() - first);
+                 prepared.add_to(std::span(targets).subspan(first, count), shifts, kernels,
+                                 std::span(result).subspan(first, count));
                },
                1);
+  for (Vec3& sum : result)
+    sum *= prepared.unit();
   return result;
 }
 
@@ -120,9 +62,21 @@ DirectSolver::DirectSolver(const ImageSettings& images, InstructionSet set, Prec
 
 void DirectSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) {
   assert(accelerations.size() == problem.positions.size());
+  if constexpr (Communicator::possible)
+    if (problem.ranks.distributed())
+      return accelerate_distributed(problem, accelerations);
   std::vector<std::size_t> all(problem.positions.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   const std::vector<Vec3> result = sampled_accelerations(problem, all, images_, set_, precision_);
+  std::copy(result.begin(), result.end(), accelerations.begin());
+}
+
+// Each rank sums over the particles of all ranks, for its own ones.
+void DirectSolver::accelerate_distributed(const GravityProblem& problem, std::span<Vec3> accelerations) {
+  const GatheredParticles all(problem);
+  std::vector<std::size_t> own(accelerations.size());
+  std::iota(own.begin(), own.end(), all.first_of_rank()[problem.ranks.rank()]);
+  const std::vector<Vec3> result = sampled_accelerations(all.problem(), own, images_, set_, precision_);
   std::copy(result.begin(), result.end(), accelerations.begin());
 }
 

@@ -17,6 +17,8 @@ public:
   std::string name() const override { return "direct"; }
 
 private:
+  void accelerate_distributed(const GravityProblem& problem, std::span<Vec3> accelerations);
+
   ImageSettings images_;
   InstructionSet set_;
   Precision precision_;
@@ -27,5 +29,11 @@ private:
 std::vector<Vec3> sampled_accelerations(const GravityProblem& problem, std::span<const std::size_t> sample,
                                         const ImageSettings& images, InstructionSet set,
                                         Precision precision = Precision::double_precision);
+
+/// Returns likewise the accelerations of particles by id, on all ranks, with the bits of one process. Collective: all
+/// ranks give the same ids. No rank gets all particles: 40 bytes of each are sorted by id over the ranks, and the sums
+/// go from rank to rank. Precondition: several ranks have the problem's particles.
+std::vector<Vec3> sampled_accelerations_of_ranks(const GravityProblem& problem, std::span<const std::uint64_t> sample,
+                                                 const ImageSettings& images, InstructionSet set, Precision precision);
 
 } // namespace keeler::gravity

@@ -20,6 +20,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <span>
+#include <type_traits>
 #include <vector>
 
 namespace keeler::gravity {
@@ -42,6 +44,9 @@ template<class Body> double height_of(const std::vector<Body>& bodies) {
 /// folded (images.hpp).
 std::vector<Vec3> near_images(const ShearingBox& box, double offset, const ImageSettings& images);
 
+/// Some bodies; not deduced, so that a vector converts to it.
+template<class Body> using BodySpan = std::type_identity_t<std::span<const Body>>;
+
 class FarImages {
 public:
   /// Fits all images beyond near_images(box, offset, {rings, true}), for bodies at heights up to `height` (m).
@@ -54,17 +59,22 @@ public:
   /// Returns the attraction per G (kg/m²) of the far images of all bodies on each target, computed in float or double.
   /// Bodies have x, y, z inside the cell and a mass; targets are some or all of them.
   template<class Real, class Body>
-  std::vector<Vec3> attractions(const std::vector<Body>& bodies, const std::vector<Body>& targets,
-                                InstructionSet set) const;
+  std::vector<Vec3> attractions(const std::vector<Body>& bodies, BodySpan<Body> targets, InstructionSet set) const;
+
+  using Coefficients = std::vector<double>; ///< of the monomials of the polynomial, in order
+
+  /// The two steps of attractions(). The first adds the moments of bodies block by block, in their order: before the
+  /// last bodies only whole blocks may be added.
+  template<class Real, class Body>
+  void add_moments(const std::vector<Body>& bodies, InstructionSet set, Coefficients& moments) const;
+  template<class Real, class Body>
+  std::vector<Vec3> attractions_by(const Coefficients& moments, BodySpan<Body> targets, InstructionSet set) const;
+  Coefficients no_moments() const { return Coefficients(shape_.size, 0.0); }
 
 private:
-  using Coefficients = std::vector<double>; // of the monomials of shape_, in order
-
   Coefficients potential_of(const Coefficients& moments) const;
   template<class Real, class Body>
-  Coefficients potential_of(const std::vector<Body>& bodies, const FarKernels<Real>& kernels) const;
-  template<class Real, class Body>
-  void load(FarBlock<Real>& block, const std::vector<Body>& bodies, std::size_t begin) const;
+  void load(FarBlock<Real>& block, std::span<const Body> bodies, std::size_t begin) const;
 
   PolynomialShape shape_;
   Vec3 scale_;              // largest displacement along each axis, m
@@ -73,7 +83,7 @@ private:
 };
 
 template<class Real, class Body>
-void FarImages::load(FarBlock<Real>& block, const std::vector<Body>& bodies, std::size_t begin) const {
+void FarImages::load(FarBlock<Real>& block, std::span<const Body> bodies, std::size_t begin) const {
   assert(begin < bodies.size());
   block.count = std::min(block.capacity, bodies.size() - begin);
   for (std::size_t k = 0; k < block.count; ++k) {
@@ -85,40 +95,38 @@ void FarImages::load(FarBlock<Real>& block, const std::vector<Body>& bodies, std
   }
 }
 
-// Returns the coefficients of the potential of the far images of all bodies.
 template<class Real, class Body>
-FarImages::Coefficients FarImages::potential_of(const std::vector<Body>& bodies,
-                                                const FarKernels<Real>& kernels) const {
+void FarImages::add_moments(const std::vector<Body>& bodies, InstructionSet set, Coefficients& moments) const {
+  assert(moments.size() == shape_.size);
   constexpr std::size_t capacity = FarBlock<Real>::capacity;
+  const FarKernels<Real> kernels = far_kernels<Real>(set);
   const std::size_t blocks = (bodies.size() + capacity - 1) / capacity;
   std::vector<Coefficients> parts(blocks, Coefficients(shape_.size));
   parallel_for(
       blocks,
       [&](std::size_t b) {
         FarBlock<Real> block;
-        load(block, bodies, b * capacity);
+        load<Real, Body>(block, bodies, b * capacity);
         kernels.gather(block, shape_, parts[b].data());
       },
       1);
-  Coefficients moments(shape_.size, 0.0);
   for (const Coefficients& part : parts)
     for (std::size_t k = 0; k < moments.size(); ++k)
       moments[k] += part[k];
-  return potential_of(moments);
 }
 
 template<class Real, class Body>
-std::vector<Vec3> FarImages::attractions(const std::vector<Body>& bodies, const std::vector<Body>& targets,
-                                         InstructionSet set) const {
+std::vector<Vec3> FarImages::attractions_by(const Coefficients& moments, BodySpan<Body> targets,
+                                            InstructionSet set) const {
   constexpr std::size_t capacity = FarBlock<Real>::capacity;
   const FarKernels<Real> kernels = far_kernels<Real>(set);
-  const Coefficients exact = potential_of<Real>(bodies, kernels);
+  const Coefficients exact = potential_of(moments);
   const std::vector<Real> potential(exact.begin(), exact.end());
   std::vector<Vec3> result(targets.size());
   parallel_for((targets.size() + capacity - 1) / capacity,
                [&](std::size_t b) {
                  FarBlock<Real> block;
-                 load(block, targets, b * capacity);
+                 load<Real, Body>(block, targets, b * capacity);
                  kernels.slopes(block, shape_, potential.data());
                  for (std::size_t k = 0; k < block.count; ++k)
                    result[b * capacity + k] =
@@ -126,6 +134,14 @@ std::vector<Vec3> FarImages::attractions(const std::vector<Body>& bodies, const 
                },
                1);
   return result;
+}
+
+template<class Real, class Body>
+std::vector<Vec3> FarImages::attractions(const std::vector<Body>& bodies, BodySpan<Body> targets,
+                                         InstructionSet set) const {
+  Coefficients moments = no_moments();
+  add_moments<Real>(bodies, set, moments);
+  return attractions_by<Real, Body>(moments, targets, set);
 }
 
 /// Up to this number bodies are treated pair by pair: a fit costs as much as some hundred exact pairs.
@@ -138,8 +154,7 @@ Vec3 far_pull(const Lattice& lattice, const std::vector<Vec3>& near, const Vec3&
 /// the settings exclude them. Precondition: the order of the bodies depends on the problem alone.
 template<class Real, class Body>
 std::vector<Vec3> far_accelerations(const GravityProblem& problem, double offset, const ImageSettings& images,
-                                    const std::vector<Body>& bodies, const std::vector<Body>& targets,
-                                    InstructionSet set) {
+                                    const std::vector<Body>& bodies, BodySpan<Body> targets, InstructionSet set) {
   if (!images.far)
     return std::vector<Vec3>(targets.size(), Vec3::Zero());
   std::vector<Vec3> result;

@@ -1,6 +1,7 @@
 #include "tree.hpp"
 
 #include "far_images.hpp"
+#include "gathered.hpp"
 #include "local_expansion.hpp"
 #include "single.hpp"
 
@@ -270,12 +271,9 @@ TreeSolver::TreeSolver(double opening_angle, const ImageSettings& images, Instru
   assert(opening_angle >= 0.0);
 }
 
-void TreeSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) {
+TreeSolver::Part TreeSolver::solve(const GravityProblem& problem, const Communicator& ranks) {
   const std::size_t count = problem.positions.size();
-  assert(accelerations.size() == count && problem.masses.size() == count && problem.ids.size() == count);
-  assert(!problem.ranks.distributed());
-  if (count == 0)
-    return;
+  assert(count > 0 && problem.masses.size() == count && problem.ids.size() == count);
   const double offset = folded_offset(problem.box, problem.offset);
   if (tree_.order().size() == count) // neighbours are then close in memory
     indices_ = tree_.order();
@@ -296,27 +294,73 @@ void TreeSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accel
   const std::vector<Group> groups = make_groups(tree_.cells());
   const OpeningRule rule = opening_rule(opening_angle_, tree_.boxes()[0], shifts);
   const double strength = problem.newton_g * tree_.mass_unit();
-  std::vector<Vec3> total =
-      far_accelerations<float>(problem, offset, images, tree_.particles(), tree_.particles(), set_);
-  std::vector<Momentum> gained(groups.size());
+  Part part;
+  for (std::size_t rank = 0; rank <= ranks.size(); ++rank) {
+    const std::size_t group = groups.size() * rank / ranks.size();
+    part.bounds.push_back(group < groups.size() ? groups[group].begin : count);
+  }
+  const std::size_t begin = part.bounds[ranks.rank()], end = part.bounds[ranks.rank() + 1];
+  const std::size_t first_group = groups.size() * ranks.rank() / ranks.size();
+  const std::span<const PointSource> targets = std::span(tree_.particles()).subspan(begin, end - begin);
+  part.accelerations = far_accelerations<float>(problem, offset, images, tree_.particles(), targets, set_);
+  std::vector<Momentum> gained(groups.size() * (ranks.rank() + 1) / ranks.size() - first_group);
   parallel_for(
-      groups.size(),
+      gained.size(),
       [&](std::size_t g) {
-        Walk walk(tree_, rule, kernels_, groups[g]);
+        const Group& group = groups[first_group + g];
+        Walk walk(tree_, rule, kernels_, group);
         for (const Vec3& shift : shifts)
           walk.add_image(shift);
         const SingleTargetBlock& sum = walk.result();
-        for (std::uint32_t k = 0; k < groups[g].count; ++k) {
-          const std::size_t p = groups[g].begin + k;
-          total[p] += strength * Vec3(sum.ax[k], sum.ay[k], sum.az[k]);
-          gained[g].add(tree_.particles()[p].mass, total[p]);
+        for (std::uint32_t k = 0; k < group.count; ++k) {
+          Vec3& total = part.accelerations[group.begin + k - begin];
+          total += strength * Vec3(sum.ax[k], sum.ay[k], sum.az[k]);
+          gained[g].add(targets[group.begin + k - begin].mass, total);
         }
       },
       4);
   // Bodies that attract each other and their images exert no net force on themselves: the mean acceleration is the
   // tree's error, and is subtracted.
-  const Vec3 mean = mean_acceleration(gained);
-  parallel_for(count, [&](std::size_t k) { accelerations[tree_.order()[k]] = total[k] - mean; });
+  const Vec3 mean = mean_acceleration(ranks.gather_on_all(std::span<const Momentum>(gained)));
+  parallel_for(part.accelerations.size(), [&](std::size_t k) { part.accelerations[k] -= mean; });
+  return part;
+}
+
+void TreeSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) {
+  assert(accelerations.size() == problem.positions.size());
+  if constexpr (Communicator::possible)
+    if (problem.ranks.distributed())
+      return accelerate_distributed(problem, accelerations);
+  if (problem.positions.empty())
+    return;
+  const Part part = solve(problem, {});
+  parallel_for(accelerations.size(), [&](std::size_t k) { accelerations[tree_.order()[k]] = part.accelerations[k]; });
+}
+
+// Each rank builds the whole tree and walks it for a part of the groups, then returns accelerations to the owners.
+void TreeSolver::accelerate_distributed(const GravityProblem& problem, std::span<Vec3> accelerations) {
+  const Communicator& ranks = problem.ranks;
+  const GatheredParticles all(problem);
+  if (all.problem().positions.empty())
+    return;
+  const Part part = solve(all.problem(), ranks);
+  const std::vector<std::size_t>& first = all.first_of_rank();
+  const auto owner_at = [&](std::size_t place) { // in the tree's order
+    return static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), tree_.order()[place]) -
+                                    first.begin()) -
+           1;
+  };
+  std::vector<std::vector<Vec3>> sent(ranks.size());
+  for (std::size_t k = 0; k < part.accelerations.size(); ++k)
+    sent[owner_at(part.bounds[ranks.rank()] + k)].push_back(part.accelerations[k]);
+  const std::vector<std::vector<Vec3>> received = ranks.exchange(sent);
+  for (std::size_t rank = 0; rank < ranks.size(); ++rank) {
+    std::size_t next = 0;
+    for (std::size_t place = part.bounds[rank]; place < part.bounds[rank + 1]; ++place)
+      if (owner_at(place) == ranks.rank())
+        accelerations[tree_.order()[place] - first[ranks.rank()]] = received[rank][next++];
+    assert(next == received[rank].size());
+  }
 }
 
 } // namespace keeler::gravity

@@ -21,6 +21,15 @@ public:
   std::string name() const override { return "tree"; }
 
 private:
+  /// The accelerations of one rank's part of the particles, which follow each other in the tree's order.
+  struct Part {
+    std::vector<std::size_t> bounds; // of the ranks' parts
+    std::vector<Vec3> accelerations;
+  };
+  /// Solves for this rank's part. Collective over `ranks`, which all give all particles. Precondition: there are some.
+  Part solve(const GravityProblem& problem, const Communicator& ranks);
+  void accelerate_distributed(const GravityProblem& problem, std::span<Vec3> accelerations);
+
   double opening_angle_;
   ImageSettings images_;
   InstructionSet set_;

@@ -6,25 +6,6 @@
 #include <fmt/format.h>
 
 namespace keeler::initial_conditions {
-namespace {
-
-// Returns "the state is in …", or the reason why it is not.
-std::string save(Patch patch, const std::filesystem::path& file, const io::SnapshotMeta& meta) {
-  const std::size_t left_out = keep_possible(patch);
-  if (patch.size() == 0)
-    return "no particle of the state can be saved";
-  try {
-    write_snapshot(file, patch, meta);
-  } catch (const IoError& not_saved) {
-    return fmt::format("the state could not be saved: {}", not_saved.what());
-  }
-  return fmt::format(
-      "the state is in '{}'{}; inspect it with keeler info, render or analyze", file.string(),
-      left_out > 0 ? fmt::format(", without {} that no snapshot may have", pluralize(left_out, "particle")) : "");
-}
-
-} // namespace
-
 std::size_t keep_possible(Patch& patch) {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < patch.size(); ++k) {
@@ -52,9 +33,30 @@ std::size_t keep_possible(Patch& patch) {
 BrokenState::BrokenState(const InvariantError& error, const Simulation& simulation)
     : InvariantError(error), step(simulation.state().step), patch(simulation.patch_at_break()) {}
 
+std::string broken_message(const InvariantError& error, const SavedState& saved) {
+  std::string state = "no particle of the state can be saved";
+  if (!saved.failure.empty())
+    state = fmt::format("the state could not be saved: {}", saved.failure);
+  else if (saved.particles > 0)
+    state = fmt::format("the state is in '{}'{}; inspect it with keeler info, render or analyze", saved.file.string(),
+                        saved.left_out > 0 ? fmt::format(", without {} that no snapshot may have",
+                                                         pluralize(saved.left_out, "particle"))
+                                           : "");
+  return fmt::format("{}; this was at step {}, orbit {}, and {}", error.what(), saved.step, format_number(saved.orbits),
+                     state);
+}
+
 std::string save_broken(const BrokenState& broken, const std::filesystem::path& file, const io::SnapshotMeta& meta) {
-  return fmt::format("{}; this was at step {}, orbit {}, and {}", broken.what(), broken.step,
-                     format_number(broken.patch.time_orbits), save(broken.patch, file, meta));
+  Patch patch = broken.patch;
+  SavedState saved{broken.step, patch.time_orbits, file, 0, keep_possible(patch), {}};
+  saved.particles = patch.size();
+  try {
+    if (saved.particles > 0)
+      write_snapshot(file, patch, meta);
+  } catch (const IoError& not_saved) {
+    saved.failure = not_saved.what();
+  }
+  return broken_message(broken, saved);
 }
 
 } // namespace keeler::initial_conditions

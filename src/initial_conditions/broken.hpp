@@ -21,8 +21,19 @@ struct BrokenState : InvariantError {
   Patch patch; ///< Simulation::patch_at_break()
 };
 
-/// Writes a snapshot of the valid particles. Returns the message of the error, the time, and the file or the reason why
-/// the state could not be saved.
+/// What became of a broken state.
+struct SavedState {
+  std::int64_t step = 0;
+  double orbits = 0.0; ///< the time
+  std::filesystem::path file;
+  std::size_t particles = 0, left_out = 0; ///< in the file, and not valid in a snapshot
+  std::string failure;                     ///< of writing; empty if the file is complete
+};
+
+/// Returns the message of the error, the time, and the file or the reason why the state could not be saved.
+std::string broken_message(const InvariantError& error, const SavedState& saved);
+
+/// Writes a snapshot of the valid particles. Returns broken_message().
 std::string save_broken(const BrokenState& broken, const std::filesystem::path& file, const io::SnapshotMeta& meta);
 
 } // namespace keeler::initial_conditions

@@ -103,4 +103,22 @@ void visit_by_id(const Particles& local, const Communicator& ranks, std::size_t 
   }
 }
 
+// Finds all ids at once by bisection: the largest bound below which there are at most `place` ids.
+std::vector<std::uint64_t> ids_at(std::span<const std::uint64_t> local_ids, const Communicator& ranks,
+                                  std::span<const std::size_t> places) {
+  std::vector<std::uint64_t> sorted(local_ids.begin(), local_ids.end()), ids(places.size(), 0);
+  std::sort(sorted.begin(), sorted.end());
+  for (int bit = 63; bit >= 0; --bit) {
+    std::vector<std::uint64_t> below(places.size());
+    for (std::size_t k = 0; k < places.size(); ++k)
+      below[k] = static_cast<std::uint64_t>(
+          std::lower_bound(sorted.begin(), sorted.end(), ids[k] + (std::uint64_t{1} << bit)) - sorted.begin());
+    ranks.sum(below);
+    for (std::size_t k = 0; k < places.size(); ++k)
+      if (below[k] <= places[k])
+        ids[k] += std::uint64_t{1} << bit;
+  }
+  return ids;
+}
+
 } // namespace keeler::particles

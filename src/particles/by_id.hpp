@@ -5,7 +5,10 @@
 #include <keeler/particles/store.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <span>
+#include <vector>
 
 namespace keeler::particles {
 
@@ -14,5 +17,10 @@ namespace keeler::particles {
 /// Precondition: rows > 0; ids are unique over all ranks.
 void visit_by_id(const Particles& local, const Communicator& ranks, std::size_t rows,
                  const std::function<void(const Particles&)>& piece);
+
+/// Returns the ids at these places (from 0) in the order of the ids of all ranks. Collective: all ranks give the same
+/// places. Precondition: places are below the number of ids.
+std::vector<std::uint64_t> ids_at(std::span<const std::uint64_t> local_ids, const Communicator& ranks,
+                                  std::span<const std::size_t> places);
 
 } // namespace keeler::particles

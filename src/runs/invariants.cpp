@@ -3,6 +3,7 @@
 #include "reference_forces.hpp"
 
 #include <keeler/cells/overlap.hpp>
+#include <keeler/core/exact_sum.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/forces/self_gravity.hpp>
@@ -117,8 +118,7 @@ std::string fault_of_numbers(const simulation::SimulationState& state) {
   return {};
 }
 
-std::string fault_of_overlap(const Patch& patch) {
-  const cells::Overlap overlap = cells::largest_overlap(patch);
+std::string fault_of_overlap(const cells::Overlap& overlap) {
   if (overlap.depth <= cells::allowed_overlap)
     return {};
   return fmt::format("particles {} and {} overlap by {} of their radius sum ({:g} is allowed)", overlap.id_i,
@@ -159,6 +159,26 @@ std::string fault_of_particles(const simulation::SimulationState& before, const 
   return {};
 }
 
+simulation::SimulationState dealt_by_id(const simulation::SimulationState& state, const Communicator& ranks) {
+  const auto dealt = [&](const auto& rows) {
+    using Row = typename std::remove_cvref_t<decltype(rows)>::value_type;
+    std::vector<std::vector<Row>> sent(ranks.size());
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      sent[state.particles.ids[k] % ranks.size()].push_back(rows[k]);
+    std::vector<Row> received;
+    for (const std::vector<Row>& some : ranks.exchange(sent))
+      received.insert(received.end(), some.begin(), some.end());
+    return received;
+  };
+  simulation::SimulationState result = state;
+  result.particles.bodies = dealt(state.particles.bodies);
+  result.particles.ids = dealt(state.particles.ids);
+  result.particles.spins = dealt(state.particles.spins);
+  for (std::size_t f = 0; f < state.forces.size(); ++f)
+    result.forces[f].accelerations = dealt(state.forces[f].accelerations);
+  return result;
+}
+
 std::string fault_of_energy(const BeforeStep& before, const simulation::SimulationState& now,
                             const diagnostics::ParticleMeans& means, const Frequencies& f) {
   const double change = std::fabs(now.balance(means, f).residual - before.residual),
@@ -169,7 +189,8 @@ std::string fault_of_energy(const BeforeStep& before, const simulation::Simulati
                      format_number(change / scale, 2), allowed_residual_of_step);
 }
 
-std::string fault_of_sums(const BeforeStep& before, const simulation::SimulationState& now, const Frequencies& f) {
+std::string fault_of_sums(const BeforeStep& before, const simulation::SimulationState& now, const Frequencies& f,
+                          const Communicator& ranks) {
   constexpr std::array<const char*, 6> names = {"m X", "m Y", "m e cos", "m e sin", "m i sin", "m i cos"};
   constexpr double tolerance = 1e-10; // over the summed magnitudes of single particles' changes
   constexpr double epsilon = std::numeric_limits<double>::epsilon(), roundings = 64.0;
@@ -179,7 +200,7 @@ std::string fault_of_sums(const BeforeStep& before, const simulation::Simulation
   const ShearingBox& box = now.box;
   const std::vector<std::uint32_t> order = particles::order_by_id(now.particles.ids),
                                    then = particles::order_by_id(before.state.particles.ids);
-  std::array<double, 6> sums{}, sizes{}, rounding{};
+  std::array<ExactSum, 6> all_sums, all_sizes, all_rounding;
   bool displaced_far = false; // a collisional change could be mistaken for a wrap
   for (std::size_t k = 0; k < order.size(); ++k) {
     const Body& body = now.particles.bodies[order[k]];
@@ -190,11 +211,19 @@ std::string fault_of_sums(const BeforeStep& before, const simulation::Simulation
                      (2.0 / f.kappa + f.shear() * before.state.step_length) * displaced > 0.25 * box.size_y;
     for (std::size_t c = 0; c < change.size(); ++c) {
       const double position = c == 0 ? box.size_x : c == 1 ? box.size_x + box.size_y : 0.0;
-      sums[c] += body.mass * change[c];
-      sizes[c] += body.mass * std::fabs(change[c]);
-      rounding[c] += roundings * epsilon * body.mass * (std::fabs(values[c]) + position);
+      all_sums[c] += body.mass * change[c];
+      all_sizes[c] += body.mass * std::fabs(change[c]);
+      all_rounding[c] += roundings * epsilon * body.mass * (std::fabs(values[c]) + position);
     }
   }
+  std::array<double, 6> sums{}, sizes{}, rounding{};
+  for (std::size_t c = 0; c < sums.size(); ++c) {
+    ranks.merge({&all_sums[c], &all_sizes[c], &all_rounding[c]});
+    sums[c] = all_sums[c].value();
+    sizes[c] = all_sizes[c].value();
+    rounding[c] = all_rounding[c].value();
+  }
+  displaced_far = ranks.any(displaced_far);
   const double vectors = rounding[2] + rounding[3] + rounding[4] + rounding[5]; // a rotation mixes the components
   for (std::size_t c = displaced_far ? 2 : 0; c < sums.size(); ++c) {
     const double allowed = tolerance * sizes[c] + (c < 2 ? rounding[c] + vectors : vectors);
@@ -209,44 +238,44 @@ std::string fault_of_forces(const Scene& scene, const forces::Boundary& boundary
                             const simulation::SimulationState& state) {
   constexpr std::size_t sampled = 32;
   const double tolerance = scene.gravity ? force_tolerance(*scene.gravity) : 0.0;
-  const std::size_t count = state.particles.size();
+  const std::size_t count = boundary.ranks.sum(state.particles.size());
   if (tolerance == 0.0 || count == 0)
     return {};
-  assert(state.forces.front().accelerations.size() == count);
   std::vector<Vec3> positions;
   std::vector<double> masses;
   const gravity::GravityProblem problem = gravity_problem(boundary, scene.planet.orbital_frequency, positions, masses);
   RandomStream random(static_cast<std::uint64_t>(state.step), RandomPurpose::sample, 1);
-  std::vector<std::size_t> sample;
+  std::vector<std::size_t> places; // in the order of ids
   for (std::size_t k = 0; k < std::min(sampled, count); ++k)
-    sample.push_back(count <= sampled ? k : static_cast<std::size_t>(random.uniform() * static_cast<double>(count)));
+    places.push_back(count <= sampled ? k : static_cast<std::size_t>(random.uniform() * static_cast<double>(count)));
   gravity::ImageSettings images = reference_images(*scene.gravity);
   if (sums_over_pairs(*scene.gravity) && !scene.gravity->images.far)
     images = scene.gravity->images;
-  const std::vector<Vec3> exact = reference_forces(problem, sample, *scene.gravity, images);
-  double errors = 0.0, squares = 0.0, worst = 0.0, mass = 0.0;
-  std::size_t worst_at = sample.front();
-  for (std::size_t k = 0; k < sample.size(); ++k) {
-    const double error = (state.forces.front().accelerations[sample[k]] - exact[k]).squaredNorm();
+  const ComparedForces compared =
+      compare_forces(problem, state.forces.front().accelerations, places, *scene.gravity, images);
+  double errors = 0.0, squares = 0.0, worst = 0.0;
+  std::size_t worst_at = 0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const double error = (compared.found[k] - compared.exact[k]).squaredNorm();
     errors += error;
-    squares += exact[k].squaredNorm();
+    squares += compared.exact[k].squaredNorm();
     if (!(error <= worst)) {
       worst = error;
-      worst_at = sample[k];
+      worst_at = k;
     }
   }
-  for (const double m : masses)
-    mass += m;
+  auto masses_of_all = exact_total<ExactSum>(masses.size(), [&](ExactSum& sum, std::size_t k) { sum += masses[k]; });
+  boundary.ranks.merge({&masses_of_all});
   // in a sparse patch the forces nearly cancel: the scale is then the force of a uniform sheet
-  const double sheet = problem.newton_g * mass / boundary.box.area();
-  const double size = std::max(std::sqrt(squares / static_cast<double>(sample.size())), sheet);
-  const double error = std::sqrt(errors / static_cast<double>(sample.size())) / size;
+  const double sheet = problem.newton_g * masses_of_all.value() / boundary.box.area();
+  const double size = std::max(std::sqrt(squares / static_cast<double>(places.size())), sheet);
+  const double error = std::sqrt(errors / static_cast<double>(places.size())) / size;
   if (error <= forces_factor * tolerance)
     return {};
   return fmt::format(
       "the forces on {} have a relative rms error of {}, largest on particle {} ({} is allowed: {:g} times "
       "the solver's tolerance)",
-      pluralize(sample.size(), "particle"), format_number(error, 2), state.particles.ids[worst_at],
+      pluralize(places.size(), "particle"), format_number(error, 2), compared.ids[worst_at],
       format_number(forces_factor * tolerance, 2), forces_factor);
 }
 

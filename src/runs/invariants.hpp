@@ -2,6 +2,7 @@
 // Each check returns the description of the first fault, "particles 3 and 17 overlap …", or an empty string.
 #pragma once
 
+#include <keeler/cells/overlap.hpp>
 #include <keeler/collision/neighbour_audit.hpp>
 #include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/simulation/simulation.hpp>
@@ -28,8 +29,8 @@ std::string fault_of_budget(const simulation::SimulationState& state, const diag
 /// Checks that all elements, spins and accelerations are finite.
 std::string fault_of_numbers(const simulation::SimulationState& state);
 
-/// Checks that no two particles overlap by more than rounding (allowed_overlap).
-std::string fault_of_overlap(const Patch& patch);
+/// Checks that the deepest overlap is no more than rounding (allowed_overlap).
+std::string fault_of_overlap(const cells::Overlap& deepest);
 
 /// Reports a pair that the neighbour lists of a step missed.
 std::string fault_of_neighbours(const collision::NeighbourAudit& audit);
@@ -45,18 +46,24 @@ BeforeStep before_step(const Simulation& simulation);
 /// Checks that ids, radii and masses did not change.
 std::string fault_of_particles(const simulation::SimulationState& before, const simulation::SimulationState& now);
 
+/// Returns the state with the particles whose ids have the remainder rank() by the number of ranks, so that a rank can
+/// compare particles of two states with different owners. Collective.
+simulation::SimulationState dealt_by_id(const simulation::SimulationState& state, const Communicator& ranks);
+
 /// Checks the change of the budget's residual in one step.
 std::string fault_of_energy(const BeforeStep& before, const simulation::SimulationState& now,
                             const diagnostics::ParticleMeans& means, const Frequencies& frequencies);
 
 /// Checks that collisions conserve Σ mX, Σ mY, Σ m e and Σ m i (e, i as vectors, at one epoch): the changes beyond
 /// kicks, orbital drift and wraps must sum to zero. X and Y are not checked if collisions displaced a particle by more
-/// than a quarter of the box. Precondition: fault_of_particles() is empty.
+/// than a quarter of the box. Collective: a rank may have a part of the particles, equal in both states. Precondition:
+/// fault_of_particles() is empty.
 std::string fault_of_sums(const BeforeStep& before, const simulation::SimulationState& now,
-                          const Frequencies& frequencies);
+                          const Frequencies& frequencies, const Communicator& ranks = {});
 
 /// Compares the self-gravity of the last kick on a random sample of particles with the sum over all pairs and images:
-/// the rms error may be at most forces_factor times the solver's tolerance. Precondition: the step ended with a kick.
+/// the rms error may be at most forces_factor times the solver's tolerance. Collective. Precondition: the step ended
+/// with a kick.
 std::string fault_of_forces(const Scene& scene, const forces::Boundary& boundary,
                             const simulation::SimulationState& state);
 inline constexpr double forces_factor = 4.0;

@@ -20,6 +20,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -264,7 +265,7 @@ std::optional<gravity::GravityEnergy> Recorder::measure_gravity(const Simulation
 }
 
 void Recorder::check_forces(const Simulation& simulation) {
-  assert(scene_.gravity && !ranks_.distributed() && !simulation.state().forces.empty());
+  assert(scene_.gravity && !simulation.state().forces.empty());
   ForceChecks& c = force_checks_;
   c.last_s = 0.0;
   {
@@ -274,13 +275,17 @@ void Recorder::check_forces(const Simulation& simulation) {
     const gravity::GravityProblem problem =
         gravity_problem(simulation.boundary(), scene_.planet.orbital_frequency, positions, masses);
     const gravity::ImageSettings images = reference_images(*scene_.gravity);
-    const diagnostics::ForceSample sample =
-        diagnostics::draw_force_sample(problem, checked_particles(problem.box, images), 0, 0.0);
-    const std::vector<Vec3> exact = reference_forces(problem, sample.targets, *scene_.gravity, images);
-    const diagnostics::ForceErrors errors =
-        force_errors(sample, exact, simulation.state().forces.front().accelerations);
+    const std::vector<std::size_t> places =
+        diagnostics::draw_force_places(simulation.count(), checked_particles(problem.box, images));
+    const ComparedForces compared =
+        compare_forces(problem, simulation.state().forces.front().accelerations, places, *scene_.gravity, images);
+    diagnostics::ForceSample sample;
+    sample.uniform = places.size();
+    sample.targets.resize(places.size());
+    std::iota(sample.targets.begin(), sample.targets.end(), std::size_t{0});
+    const diagnostics::ForceErrors errors = force_errors(sample, compared.exact, compared.found);
     ++c.count;
-    c.particles = sample.uniform;
+    c.particles = places.size();
     c.last_step = simulation.state().step;
     c.last_rms = errors.rms;
     c.worst_rms = std::max(c.worst_rms, errors.rms);

@@ -2,8 +2,34 @@
 
 #include <keeler/core/simd.hpp>
 #include <keeler/gravity/direct.hpp>
+#include <keeler/particles/by_id.hpp>
+#include <keeler/particles/order.hpp>
+
+#include <cassert>
 
 namespace keeler::runs {
+namespace {
+
+// Returns on all ranks the accelerations of particles by id, each known to its owner.
+[[maybe_unused]] std::vector<Vec3> rows_of_ranks(const gravity::GravityProblem& problem,
+                                                 std::span<const Vec3> accelerations,
+                                                 const std::vector<std::uint64_t>& ids) {
+  struct Row {
+    Vec3 acceleration;
+    std::uint64_t number; // in the sample
+  };
+  std::vector<Row> own;
+  for (std::size_t k = 0; k < problem.ids.size(); ++k)
+    for (std::size_t n = 0; n < ids.size(); ++n)
+      if (ids[n] == problem.ids[k])
+        own.push_back({accelerations[k], n});
+  std::vector<Vec3> rows(ids.size());
+  for (const Row& row : problem.ranks.gather_on_all(std::span<const Row>(own)))
+    rows[row.number] = row.acceleration;
+  return rows;
+}
+
+} // namespace
 
 double force_tolerance(const gravity::GravitySettings& settings) {
   using Solver = gravity::GravitySettings::Solver;
@@ -32,13 +58,32 @@ gravity::ImageSettings reference_images(const gravity::GravitySettings& settings
   return {.rings = sums_over_pairs(settings) || force_tolerance(settings) < one_ring_suffices ? 2 : 1};
 }
 
-std::vector<Vec3> reference_forces(const gravity::GravityProblem& problem, std::span<const std::size_t> sample,
-                                   const gravity::GravitySettings& settings, const gravity::ImageSettings& images) {
+ComparedForces compare_forces(const gravity::GravityProblem& problem, std::span<const Vec3> accelerations,
+                              std::span<const std::size_t> places, const gravity::GravitySettings& settings,
+                              const gravity::ImageSettings& images) {
   using gravity::Precision;
   constexpr double single_suffices = 1e-5;
-  return sampled_accelerations(problem, sample, images, choose_instruction_set(),
-                               force_tolerance(settings) < single_suffices ? Precision::double_precision
-                                                                           : Precision::single_precision);
+  assert(accelerations.size() == problem.positions.size());
+  const Precision precision =
+      force_tolerance(settings) < single_suffices ? Precision::double_precision : Precision::single_precision;
+  const InstructionSet set = choose_instruction_set();
+  ComparedForces compared;
+  if constexpr (Communicator::possible)
+    if (problem.ranks.distributed()) {
+      compared.ids = particles::ids_at(problem.ids, problem.ranks, places);
+      compared.exact = sampled_accelerations_of_ranks(problem, compared.ids, images, set, precision);
+      compared.found = rows_of_ranks(problem, accelerations, compared.ids);
+      return compared;
+    }
+  const std::vector<std::uint32_t> order = particles::order_by_id(problem.ids);
+  std::vector<std::size_t> sample;
+  for (const std::size_t place : places) {
+    sample.push_back(order[place]);
+    compared.ids.push_back(problem.ids[sample.back()]);
+    compared.found.push_back(accelerations[sample.back()]);
+  }
+  compared.exact = sampled_accelerations(problem, sample, images, set, precision);
+  return compared;
 }
 
 } // namespace keeler::runs

@@ -3,6 +3,8 @@
 
 #include <keeler/gravity/solver.hpp>
 
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -19,9 +21,18 @@ bool sums_over_pairs(const gravity::GravitySettings& settings);
 /// errs by 3e-5 (docs/theory/gravity.md). Solvers that sum over pairs have two, so that their truncation is tested too.
 gravity::ImageSettings reference_images(const gravity::GravitySettings& settings);
 
-/// Returns the reference's accelerations (m rad^-2) of the particles with the indices `sample`; sums are in single
-/// precision (3e-7) unless the solver is nearly as exact.
-std::vector<Vec3> reference_forces(const gravity::GravityProblem& problem, std::span<const std::size_t> sample,
-                                   const gravity::GravitySettings& settings, const gravity::ImageSettings& images);
+/// Accelerations of a sample, in its order, m rad⁻².
+struct ComparedForces {
+  std::vector<std::uint64_t> ids;
+  std::vector<Vec3>
+      exact; ///< the reference's; sums are in single precision (3e-7) unless the solver is nearly as exact
+  std::vector<Vec3> found; ///< by the solver
+};
+
+/// Compares the accelerations of the particles at these places (from 0) in the order of the ids of all ranks.
+/// Collective: all ranks give the same places, and get the same result.
+ComparedForces compare_forces(const gravity::GravityProblem& problem, std::span<const Vec3> accelerations,
+                              std::span<const std::size_t> places, const gravity::GravitySettings& settings,
+                              const gravity::ImageSettings& images);
 
 } // namespace keeler::runs

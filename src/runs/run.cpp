@@ -88,13 +88,14 @@ RunResult evolve(const Scene& scene, const RunOptions& options, RunRequests& req
     result.resume_command = resume_command(options);
   } catch (const Interrupted&) {
     fail_given_up(options, runner.last_checkpoint(), recorder);
-  } catch (const InvariantError& error) {
-    if (options.ranks.distributed())
-      throw; // the particles are distributed, and other ranks may not have seen the error
-    fail_broken(error, simulation, scene, folder, recorder);
   } catch (const IoError&) {
     if (options.ranks.is_root())
       recorder.require_folder(); // a folder that was moved during a write explains the failure better
+    throw;
+  } catch (const Error& error) {
+    // particles are distributed: all ranks must know of the error
+    if (error.code() == ExitCode::invariant && (!options.ranks.distributed() || comm::all_ranks_failed()))
+      fail_broken(InvariantError(error.what()), simulation, scene, folder, recorder);
     throw;
   }
   const RunCost cost{.first_step = first_step,
@@ -194,24 +195,6 @@ Begun first_simulation(const Scene& scene, const RunOptions& options, const RunR
   }
 }
 
-// Checks before the initial state is made, when the number of particles is still unknown.
-void require_distributable_start(const Scene& scene, const RunOptions& options) {
-  constexpr std::size_t enough_particles = 1000000;
-  if constexpr (Communicator::possible)
-    options.ranks.together([&] {
-      if (options.ranks.distributed())
-        Simulation::require_distributable(scene, enough_particles);
-    });
-}
-
-void refuse_distributed_checks(const RunOptions& options) {
-  options.ranks.together([&] {
-    if (options.check && options.ranks.distributed())
-      throw UsageError(
-          "--check needs all particles in one process, and several ranks share them; leave it out, or run on one rank");
-  });
-}
-
 void send_notices(const Scene& scene, const RunOptions& options, const scene::PatchScale& scale) {
   if (!options.notice)
     return;
@@ -226,9 +209,7 @@ RunResult begin(const Scene& asked, const RunOptions& options, RunRequests& requ
   const Communicator& ranks = options.ranks;
   const RunFolder folder(options.folder);
   require_same_run(asked, options);
-  refuse_distributed_checks(options);
   ranks.on_root([&] { initial_conditions::require_start_file(asked); });
-  require_distributable_start(asked, options);
   ranks.on_root([&] {
     if (!options.force)
       folder.refuse_if_occupied(); // before the costly initial state
@@ -285,7 +266,6 @@ RunResult resume(const RunOptions& options, RunRequests& requests) {
   const Communicator& ranks = options.ranks;
   const RunFolder folder(options.folder);
   require_same_run(options);
-  refuse_distributed_checks(options);
   std::optional<FolderLock> lock;
   ranks.on_root([&] { lock.emplace(folder.path()); });
   const std::filesystem::path newest = newest_checkpoint(options);

@@ -28,7 +28,6 @@ Runner::Runner(const Scene& scene, const RunOptions& options, RunRequests& reque
   requests_.stop_timeout_s = stop_timeout();
   if (options.check)
     check_.emplace(scene, simulation);
-  assert(!check_ || !simulation.ranks().distributed());
   assert(last_checkpoint >= -1 && last_checkpoint <= first_step_);
 }
 
@@ -123,7 +122,8 @@ bool Runner::checkpoint_due_by_clock() const {
 bool Runner::force_check_due() const {
   const ForceChecks& checks = recorder_.force_checks();
   const double next = checks.count > 0 ? checks.last_s : first_check * static_cast<double>(simulation_.count());
-  return has_force_checks() && between_kicks() && checks.seconds + next <= fraction_of_checks * watch_.elapsed();
+  return has_force_checks() && between_kicks() &&
+         ranks().broadcast(checks.seconds + next <= fraction_of_checks * watch_.elapsed());
 }
 
 // A step may take up to three times as long as the longest one so far.

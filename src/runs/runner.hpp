@@ -43,11 +43,8 @@ private:
   void observe();
   void report_passage();
   bool checkpoint_due_by_clock() const;
-  // The exact sum needs all particles on one rank. For a single particle the pulls of its images cancel, so a relative
-  // error is undefined.
-  bool has_force_checks() const {
-    return scene_.gravity && scene_.gravity->by_pairs() && !ranks().distributed() && simulation_.count() > 1;
-  }
+  // For a single particle the pulls of its images cancel, so a relative error is undefined.
+  bool has_force_checks() const { return scene_.gravity && scene_.gravity->by_pairs() && simulation_.count() > 1; }
   bool force_check_due() const;
   unsigned stop_timeout() const;
   void update_step_cost(double now);

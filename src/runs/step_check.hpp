@@ -19,10 +19,12 @@ public:
   void begin() { before_ = before_step(simulation_); }
 
   /// Checks the state after the step. Precondition: begin() was called. Throws InvariantError that names the first
-  /// invariant that does not hold.
-  void end() const;
+  /// invariant that does not hold, on all ranks. Collective, as begin().
+  void end();
 
 private:
+  void require(const char* invariant, const std::string& fault) const;
+
   const Scene& scene_;
   Simulation& simulation_;
   collision::NeighbourAudit audit_;

@@ -2,44 +2,13 @@
 #include <keeler/simulation/simulation.hpp>
 
 #include <keeler/cells/overlap.hpp>
-#include <keeler/collision/settings.hpp>
-#include <keeler/core/error.hpp>
 #include <keeler/decomposition/blocks.hpp>
-#include <keeler/finders/finders.hpp>
-
-#include <fmt/format.h>
 
 namespace keeler::simulation {
-
-namespace {
-
-const char* solver_words(GravitySettings::Solver solver) {
-  using enum GravitySettings::Solver;
-  return solver == direct ? "gravity by direct sums" : solver == tree ? "gravity by the tree" : "axisymmetric gravity";
-}
-
-} // namespace
-
-// Refuses what still needs an order, an index or a network of all particles.
-void Simulation::require_distributable(const Scene& scene, std::size_t count) {
-  const auto refuse = [](const char* what, const char* instead) {
-    throw UsageError(fmt::format("{} cannot be distributed over ranks; {}, or run on one rank", what, instead));
-  };
-  if (scene.gravity) {
-    const GravitySettings gravity = chosen_for(count, *scene.gravity);
-    if (gravity.solver != GravitySettings::Solver::fft && gravity.solver != GravitySettings::Solver::mesh)
-      refuse(solver_words(gravity.solver), "set gravity.solver to \"fft\" (of bench: --solver fft)");
-    if (gravity.carries())
-      refuse("contacts at rest that carry kicks", "set gravity.resting_contacts to \"bounced\"");
-  }
-  if (!finders::make_finder(scene.collisions.finder)->exact())
-    refuse("an inexact finder", "set collisions.finder to \"certified\"");
-}
 
 void Simulation::divide() {
   if (!ranks_.distributed())
     return;
-  ranks_.together([&] { require_distributable(scene_, count_); });
   blocks_ = std::make_unique<decomposition::Blocks>(ranks_, state_.box, scene_.planet.frequencies);
   blocks_->distribute(holding());
 }
@@ -60,6 +29,7 @@ void Simulation::require_ghost_layer() {
     return;
   drift_.release();
   blocks_->rebuild(holding(), epoch);
+  own_by_id_.clear();
   find_moonlets();
 }
 
@@ -79,16 +49,28 @@ cells::Overlap Simulation::largest_overlap_distributed() {
 
 void Simulation::collide_distributed() {
   const double offset = state_.epoch_offset();
+  const auto remove_ghosts = [&] {
+    blocks_->remove_ghosts(state_.particles);
+    if (scene_.gravity)
+      blocks_->remove_ghosts(state_.forces.front().accelerations);
+  };
   for (;;) {
     require_ghost_layer();
     blocks_->add_ghosts(state_.particles);
     if (scene_.gravity)
       blocks_->add_ghosts(state_.forces.front().accelerations);
-    const bool done = drift_.collide_distributed(state_.particles, blocks_->ghosts(), ranks_, state_.box, offset,
-                                                 state_.collisions, kicks_of_drift());
-    blocks_->remove_ghosts(state_.particles);
-    if (scene_.gravity)
-      blocks_->remove_ghosts(state_.forces.front().accelerations);
+    mark_at_rest();
+    bool done = false;
+    try {
+      done = drift_.collide_distributed(state_.particles, blocks_->ghosts(), ranks_, state_.box, offset,
+                                        state_.collisions, kicks_of_drift());
+    } catch (...) {
+      remove_ghosts(); // the state may be saved
+      throw;
+    }
+    if (done)
+      note_slow_pairs();
+    remove_ghosts();
     if (done)
       return;
     blocks_->widen();

@@ -4,6 +4,7 @@
 
 #include <keeler/core/units.hpp>
 #include <keeler/particles/by_id.hpp>
+#include <keeler/particles/order.hpp>
 
 #include <cassert>
 #include <cmath>
@@ -37,6 +38,27 @@ void Simulation::visit_patch(std::size_t rows, const std::function<void(const Pa
 
 Patch Simulation::patch_at_break() const {
   return patch_of(state_.particles, offset_at_break(), time_at_break());
+}
+
+std::size_t Simulation::visit_at_break(std::size_t rows, const std::function<bool(const Patch&, std::size_t)>& keeps,
+                                       const std::function<void(const Patch&, std::size_t)>& begin,
+                                       const std::function<void(const Patch&)>& piece) const {
+  const double offset = offset_at_break(), after = time_at_break();
+  const Patch here = patch_of(state_.particles, offset, after); // in the order of the ids
+  const std::vector<std::uint32_t> order = particles::order_by_id(state_.particles.ids);
+  Particles kept;
+  kept.rough = state_.particles.rough;
+  for (std::size_t k = 0; k < here.size(); ++k)
+    if (keeps(here, k)) {
+      kept.bodies.push_back(state_.particles.bodies[order[k]]);
+      kept.ids.push_back(state_.particles.ids[order[k]]);
+      if (kept.rough)
+        kept.spins.push_back(state_.particles.spins[order[k]]);
+    }
+  const std::size_t count = ranks_.sum(kept.size());
+  ranks_.on_root([&] { begin(patch_of(Particles(), offset, after), count); });
+  visit_by_id(kept, ranks_, rows, [&](const Particles& some) { piece(patch_of(some, offset, after)); });
+  return count_ - count;
 }
 
 double Simulation::offset_at_break() const {

@@ -107,7 +107,6 @@ void Simulation::advance() {
     drifting_ = false;
     if (scene_.gravity) // the first of the forces
       state_.forces.front().work += drift_.kick_work();
-    note_slow_pairs();
     advance_epoch();
     undisturbed_ = true;
   }
@@ -126,6 +125,7 @@ void Simulation::collide() {
     return collide_distributed();
   drift_.collide(state_.particles, state_.box, state_.epoch_offset(), state_.collisions, undisturbed_,
                  kicks_of_drift());
+  note_slow_pairs();
 }
 
 // Returns the interval between kicks of self-gravity that the next drift is a part of.
@@ -165,9 +165,8 @@ void Simulation::note_slow_pairs() {
     resting_->note(state_.particles, pair);
 }
 
-// Calls function(step) with this boundary's kicks. `before` is the kick interval that ends here.
-template<class Function> void Simulation::with_kicks(double before, const Function& function) {
-  const Stopwatch watch(split_.resting);
+// Returns the kicks at this boundary. `before` is the kick interval that ends here.
+std::vector<contact_solver::KickPart> Simulation::kick_parts(double before) {
   std::vector<contact_solver::KickPart> parts;
   for (std::size_t f = 0; f < forces_.size(); ++f)
     if (kick_due(f)) {
@@ -175,17 +174,31 @@ template<class Function> void Simulation::with_kicks(double before, const Functi
       parts.push_back({state_.forces[f].accelerations, 0.5 * (f == 0 ? before : after), 0.5 * after,
                        &state_.forces[f].work, &state_.forces[f].azimuthal_gain});
     }
-  function(contact_solver::RestingStep{state_.particles, scene_.planet.frequencies, state_.box, state_.epoch_offset(),
-                                       0.5 * state_.step_length, kick_interval(),
-                                       newton_g(scene_.planet.orbital_frequency), parts});
-  undisturbed_ = false;
+  return parts;
+}
+
+contact_solver::RestingStep Simulation::resting_step(Particles& particles,
+                                                     std::span<const contact_solver::KickPart> kicks) const {
+  return {particles,
+          scene_.planet.frequencies,
+          state_.box,
+          state_.epoch_offset(),
+          0.5 * state_.step_length,
+          kick_interval(),
+          newton_g(scene_.planet.orbital_frequency),
+          kicks};
 }
 
 void Simulation::persist_contacts(double before) {
   assert(!carries() || before > 0.0);
-  if (!carries() || !kick_due(0) || resting_->idle(state_.resting))
+  if (!carries() || !kick_due(0))
     return;
-  with_kicks(before, [&](const contact_solver::RestingStep& step) {
+  const Stopwatch watch(split_.resting);
+  if (ranks_.distributed())
+    resting_->share_noted(ranks_);
+  if (resting_->idle(state_.resting))
+    return;
+  with_members(before, [&](const contact_solver::RestingStep& step) {
     resting_->persist(state_.resting, step, scene_.collisions.friction, state_.collisions);
   });
   schedule_drift();
@@ -195,12 +208,26 @@ void Simulation::persist_contacts_second_half() {
   if (!carries() || !kick_due(0))
     return;
   at_rest_.clear();
+  ids_at_rest_.clear();
   if (state_.resting.pairs.empty())
     return;
-  at_rest_.assign(state_.particles.size(), 0);
-  with_kicks(kick_interval(), [&](const contact_solver::RestingStep& step) {
+  const Stopwatch watch(split_.resting);
+  with_members(kick_interval(), [&](const contact_solver::RestingStep& step) {
+    at_rest_.assign(step.particles.size(), 0);
     resting_->persist_second_half(state_.resting, step, state_.collisions, at_rest_);
+    if (ranks_.distributed())
+      note_ids_at_rest(step.particles);
   });
+}
+
+// Calls function(step) with all particles of contacts at rest.
+void Simulation::with_members(double before, const std::function<void(const contact_solver::RestingStep&)>& function) {
+  const std::vector<contact_solver::KickPart> parts = kick_parts(before);
+  if (ranks_.distributed())
+    with_members_of_ranks(parts, function);
+  else
+    function(resting_step(state_.particles, parts));
+  undisturbed_ = false;
 }
 
 // Sorts particles in memory by position every tenth of an orbit.
@@ -354,9 +381,11 @@ void Simulation::wrap_changed(const Particles& before) {
 
 double Simulation::largest_overlap() {
   drift_.release(); // frees memory for the search
-  if (ranks_.distributed())
-    return largest_overlap_distributed().depth;
-  return cells::largest_overlap(patch()).depth;
+  return deepest_overlap().depth;
+}
+
+cells::Overlap Simulation::deepest_overlap() {
+  return ranks_.distributed() ? largest_overlap_distributed() : cells::largest_overlap(patch());
 }
 
 diagnostics::ParticleMeans Simulation::means() const {

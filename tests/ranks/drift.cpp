@@ -9,6 +9,7 @@
 #include <keeler/collision/costs.hpp>
 #include <keeler/collision/drift.hpp>
 #include <keeler/decomposition/blocks.hpp>
+#include <keeler/finders/finders.hpp>
 
 #include <doctest/doctest.h>
 
@@ -210,4 +211,37 @@ TEST_CASE("ranks: a ghost layer is valid for many steps") {
   s.step = two_pi * 1e-3;
   for (const std::size_t strips : some_strips())
     CHECK(walk(s, 5, 60, {.strips = strips}).rebuilds < 30);
+}
+
+// Inexact finders are not asked about all pairs, so their twin is the drift of one process.
+TEST_CASE("ranks: inexact finders have the bits of one process, in repeated steps too") {
+  std::uint64_t again = 0, contacts = 0;
+  for (const finders::FinderEntry& entry : finders::finder_table()) {
+    CAPTURE(entry.name);
+    Scenario s;
+    s.step = two_pi * 1e-2;
+    s.count = 150;
+    s.filling = 0.4, s.optical_depth = 1.0;
+    collision::CollisionSettings settings = test::settings_of(s);
+    settings.finder = entry.name;
+    Ring ring(test::make_patch(s, 7), settings, s.step);
+    Part part(ring, settings, {.growth = 1.5, .rows_beyond = 0.0});
+    collision::DriftPhase alone(settings, ring.frequencies, test::omega, ring.step);
+    for (int k = 0; k < 15; ++k) {
+      CollisionTally tally, expected;
+      alone.collide(ring.particles, ring.box, ring.epoch_offset(), expected, false, {});
+      part.collide(ring, tally);
+      INFO("step ", k);
+      const bool same = test::same_bits(part.own, part_of(ring.particles, part.own));
+      REQUIRE(!keeler_test::launched().any(!same));
+      REQUIRE(test::same_bits(tally, expected));
+      CHECK(tally.gave_up == expected.gave_up);
+      contacts += expected.fast + expected.slow;
+      ring.move_on();
+      part.own = part_of(ring.particles, part.own);
+    }
+    again += part.drift.costs().repeated_steps;
+  }
+  CHECK(contacts > 1000);
+  CHECK(again >= (keeler_test::launched().distributed() ? 10 : 0));
 }

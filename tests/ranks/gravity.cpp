@@ -1,4 +1,4 @@
-// The mesh solver on several ranks has the bits of one process, for any distribution of the particles.
+// Each solver on several ranks has the bits of one process, for any distribution of the particles.
 #include <keeler/gravity/fft.hpp>
 
 #include <keeler/core/error.hpp>
@@ -112,7 +112,7 @@ Part own_part(const Sample& whole, Distribution distribution) {
   return own;
 }
 
-std::vector<Vec3> solve(gravity::FftSolver& solver, gravity::GravityProblem problem, const Communicator& ranks) {
+std::vector<Vec3> solve(gravity::GravitySolver& solver, gravity::GravityProblem problem, const Communicator& ranks) {
   std::vector<Vec3> accelerations(problem.positions.size(), Vec3::Constant(1e300));
   problem.ranks = ranks;
   solver.accelerate(problem, accelerations);
@@ -181,6 +181,49 @@ TEST_CASE("energy and stress on many ranks have the bits of one process, on each
   }
 }
 
+TEST_CASE("accelerations of other solvers on many ranks have the bits of one process") {
+  using Solver = GravitySettings::Solver;
+  struct Method {
+    Solver solver;
+    double opening_angle;
+    gravity::ImageSettings images;
+    std::size_t max_particles;
+  };
+  for (const Method& method : {Method{Solver::tree, 0.7, {}, 6000}, Method{Solver::tree, 0.3, {2, false}, 3000},
+                               Method{Solver::direct, 0.0, {}, 1500}, Method{Solver::axisymmetric, 0.0, {}, 6000}})
+    for (const Sample& whole : samples()) {
+      if (whole.ids.size() > method.max_particles)
+        continue;
+      GravitySettings settings;
+      settings.solver = method.solver;
+      settings.opening_angle = method.opening_angle;
+      settings.images = method.images;
+      settings.shortest_wavelength = whole.box.size_x / 7.0;
+      const auto alone = make_gravity_solver(settings, whole.masses, whole.box.area());
+      const auto distributed = make_gravity_solver(settings, whole.masses, whole.box.area());
+      for (const double fraction : {0.0, 0.37}) {
+        const double offset = fraction * whole.box.size_y;
+        const std::vector<Vec3> expected = solve(*alone, whole.problem(offset), {});
+        for (const Distribution distribution :
+             {Distribution::by_id, Distribution::by_position, Distribution::to_last}) {
+          CAPTURE(whole.name);
+          CAPTURE(static_cast<int>(method.solver));
+          CAPTURE(method.opening_angle);
+          CAPTURE(fraction);
+          CAPTURE(static_cast<int>(distribution));
+          const Part own = own_part(whole, distribution);
+          CHECK(differing(expected, own, solve(*distributed, own.state.problem(offset), launched())) == 0);
+          if (method.solver == Solver::axisymmetric) {
+            gravity::GravityProblem problem = own.state.problem(offset);
+            problem.ranks = launched();
+            CHECK(dynamic_cast<gravity::EnergyMeter&>(*distributed).energy(problem).potential ==
+                  dynamic_cast<gravity::EnergyMeter&>(*alone).energy(whole.problem(offset)).potential);
+          }
+        }
+      }
+    }
+}
+
 TEST_CASE("a position that is not finite on one rank is an error on all") {
   const Sample whole = samples().back();
   Part own = own_part(whole, Distribution::to_last);
@@ -195,7 +238,13 @@ TEST_CASE("a position that is not finite on one rank is an error on all") {
 }
 
 TEST_CASE("no particles at all are no error") {
+  using Solver = GravitySettings::Solver;
   const Sample none{"none", {40.0, 30.0, 1.5, 0.0}, {}, {}, {}};
-  gravity::FftSolver solver({1.4, 2.5, true}, choose_instruction_set());
-  CHECK(solve(solver, none.problem(0.0), launched()).empty());
+  for (const Solver method : {Solver::fft, Solver::tree, Solver::direct, Solver::axisymmetric}) {
+    GravitySettings settings;
+    settings.solver = method;
+    settings.shortest_wavelength = 10.0;
+    const auto solver = make_gravity_solver(settings, none.masses, none.box.area());
+    CHECK(solve(*solver, none.problem(0.0), launched()).empty());
+  }
 }

@@ -1,34 +1,9 @@
 #!/bin/bash
 # run.sh KEELER SOURCE_DIR MPIEXEC OTHER_BUILD: distributed runs have the bits of one process, for any number of ranks and
 # threads, and of ranks after a restart; errors end all ranks with one line of Keeler's and its exit code.
-# shellcheck source=tests/cli/helpers.sh
-source "$(dirname "$0")/../cli/helpers.sh"
-mpiexec=$3 other_build=$4
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 # containers of tests
-
-# without files in memory, which a limit on the size of files would forbid
-transport=(--mca btl 'self,tcp')
-export PMIX_MCA_gds=hash
-
-# on_ranks RANKS THREADS CODE ARGUMENT...: runs the program on RANKS ranks and checks its exit code; output as of runs(),
-# without the launcher's lines
-on_ranks() {
-  local ranks=$1 threads=$2 expected=$3 code=0
-  shift 3
-  "$mpiexec" -n "$ranks" --oversubscribe --bind-to none "${transport[@]}" -x OMP_NUM_THREADS="$threads" "$keeler" "$@" \
-    >"$work/out" 2>"$work/all" || code=$?
-  grep -E '^keeler: |^[0-9.]+/[0-9.]+ orbits ' "$work/all" >"$work/err"
-  [ "$code" -eq "$expected" ] || fail "$ranks ranks, $*: exit $code instead of $expected: $(tail -n 20 "$work/all")"
-}
-
-scene() { # NAME TEXT: writes a scene; adds the common keys
-  cat - >"$work/$1.toml" <<END
-title = "$1"
-[planet]
-preset = "saturn-a-ring"
-$2
-END
-}
+# shellcheck source=tests/ranks/helpers.sh
+source "$(dirname "$0")/helpers.sh"
+other_build=$4
 scene uniform '[box]
 size = [150, 60]
 [particles]
@@ -98,27 +73,8 @@ series_every = 0.02
 snapshot_every = 0.1
 checkpoint_every = 0.1'
 
-# same NAME FOLDER OTHER
-same() {
-  [ "$(state_hash "$2")" = "$(state_hash "$3")" ] || fail "$1: state_hash differs"
-  same_series "$1" "$2" "$3"
-  same_snapshots "$1" "$2" "$3"
-  if [ -e "$2/moonlets.csv" ]; then
-    cmp -s "$2/moonlets.csv" "$3/moonlets.csv" || fail "$1: moonlets.csv differs"
-  fi
-  if [ -e "$2/impact_speeds.csv" ]; then
-    cmp -s "$2/impact_speeds.csv" "$3/impact_speeds.csv" || fail "$1: impact_speeds.csv differs"
-    same_bytes "$1" /Contacts "$2/collisions_000000.h5" "$3/collisions_000000.h5"
-  fi
-}
-
 for name in uniform wakes sizes moonlet; do
-  runs 0 run "$work/$name.toml" -o "$work/$name-1"
-  for ranks in "2 1" "2 2" "3 1" "4 2" "8 1"; do
-    read -r count threads <<<"$ranks"
-    on_ranks "$count" "$threads" 0 run "$work/$name.toml" -o "$work/$name-$count-$threads"
-    same "$name, $count ranks of $threads threads" "$work/$name-1" "$work/$name-$count-$threads"
-  done
+  on_all_ranks "$name"
 done
 
 # Stopped on 4 ranks, resumed on 3, then on one.
@@ -175,7 +131,7 @@ same "a snapshot as start" "$work/from-1" "$work/from-4"
 awk "BEGIN { exit !($(peak "$work/from-4") < 0.75 * $(peak "$work/from-1")) }" ||
   fail "a snapshot as start: the first of 4 ranks took $(peak "$work/from-4") MB, one process $(peak "$work/from-1") MB"
 
-# Features that ranks do not support yet are refused by name, before anything is written.
+# Commands for one process, and impossible runs, are refused before anything is written.
 refused() { # WORDS ARGUMENT...
   local words=$1
   shift
@@ -184,11 +140,6 @@ refused() { # WORDS ARGUMENT...
   grep -qF -- "$words" "$work/err" || fail "no '$words' in: $(cat "$work/err")"
   [ ! -e "$work/none" ] || fail "$words: something was written"
 }
-refused 'gravity by the tree cannot be distributed over ranks; set gravity.solver to "fft"' run "$work/wakes.toml" -o "$work/none" --set gravity.solver=tree
-refused 'set gravity.resting_contacts to "bounced"' run "$work/wakes.toml" -o "$work/none" \
-  --set gravity.resting_contacts=carried
-refused 'set collisions.finder to "certified"' run "$work/uniform.toml" -o "$work/none" --set collisions.finder=original
-refused 'leave it out' run "$work/uniform.toml" -o "$work/none" --check
 refused "'keeler analyze' is for one process" analyze "$work/uniform-1"
 refused "'keeler bench drift' is for one process" bench drift --count 100
 refused 'particles.count' run "$work/uniform.toml" -o "$work/none" --set particles.count=-1
@@ -253,8 +204,8 @@ differ "the content of '/proc/self/cwd/radii.txt'" "run $work/radii.toml -o $wor
   fail "own threads and paths: $(cat "$work/all")"
 same "own threads and paths" "$work/uniform-1" "$work/mixed"
 
-# A missing start is reported before features that are refused.
-on_ranks 2 1 4 run "$work/wakes.toml" -o "$work/none" --from "$work/absent.hdf" --set gravity.solver=tree
+# A missing start
+on_ranks 2 1 4 run "$work/wakes.toml" -o "$work/none" --from "$work/absent.hdf"
 grep -qF "start.from names '$work/absent.hdf', which does not exist" "$work/err" || fail "absent: $(cat "$work/err")"
 
 # Two builds do not start one run, in either order.

@@ -92,6 +92,10 @@ public:
   /// Returns on the root the rows of all ranks, in the order of the ranks; limits as above.
   template<class Row> std::vector<Row> gather(const std::vector<Row>& rows) const;
 
+  /// Returns the rows of all ranks, in the order of the ranks, on each of them. Precondition: less than 2³¹ rows in
+  /// all.
+  template<class Row> std::vector<Row> gather_on_all(std::span<const Row> rows) const;
+
   /// Replaces each number by its sum over all ranks, modulo 2⁶⁴.
   void sum(std::span<std::uint64_t> numbers) const;
   /// Returns the sum of the numbers of all ranks, modulo 2⁶⁴.
@@ -145,6 +149,9 @@ private:
   /// Sends sent[r] to every partner r. Throws UsageError if one of them gets 1 GiB or more.
   void exchange(const std::vector<std::span<const std::byte>>& sent, std::span<const std::size_t> partners,
                 const Allocate& allocate) const;
+  /// Writes the rows of all ranks, each of `row_size` bytes, to the memory that `allocate` returns for their number.
+  void gather_on_all(std::span<const std::byte> rows, std::size_t row_size,
+                     const std::function<std::byte*(std::size_t count)>& allocate) const;
 
   std::size_t rank_ = 0, size_ = 1;
 };
@@ -154,7 +161,7 @@ struct ExchangeCosts {
   double seconds = 0.0;          ///< wall time of communication, waiting for other ranks included
   std::uint64_t messages = 0;    ///< sent to other ranks by exchange()
   std::uint64_t bytes = 0;       ///< of these messages
-  std::uint64_t collectives = 0; ///< calls of sum(), merge(), max(), min(), any() and broadcast()
+  std::uint64_t collectives = 0; ///< calls of sum(), merge(), max(), min(), any(), broadcast() and gather_on_all()
   std::uint64_t max_bytes = 0;   ///< the most bytes that one call sent from or received on this rank
 };
 const ExchangeCosts& exchange_costs(); ///< up to now
@@ -164,6 +171,8 @@ void finish_ranks();
 /// Ends a rank that failed with this code. If the other ranks do not know of the error they wait for this rank in some
 /// other call; then it aborts all ranks.
 void fail_ranks(ExitCode code);
+/// True if all ranks have thrown the error that ends this rank together: they may still make collective calls.
+bool all_ranks_failed();
 /// True if another rank reports the error that ends this rank.
 bool another_rank_reports();
 
@@ -175,6 +184,16 @@ template<class Row> std::vector<Row> Communicator::gather(const std::vector<Row>
   std::vector<Row> all(bytes.size() / sizeof(Row));
   if (!bytes.empty())
     std::memcpy(static_cast<void*>(all.data()), bytes.data(), bytes.size());
+  return all;
+}
+
+template<class Row> std::vector<Row> Communicator::gather_on_all(std::span<const Row> rows) const {
+  static_assert(std::is_trivially_destructible_v<Row>);
+  std::vector<Row> all;
+  gather_on_all(std::as_bytes(rows), sizeof(Row), [&](std::size_t count) {
+    all.resize(count);
+    return reinterpret_cast<std::byte*>(all.data());
+  });
   return all;
 }
 

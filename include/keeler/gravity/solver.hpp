@@ -24,7 +24,7 @@ struct GravityProblem {
   ShearingBox box;                    ///< its size and shear
   double offset = 0.0;                ///< the box's shear offset at this instant, m
   double newton_g = 0.0;              ///< m^3 kg^-1 rad^-2
-  Communicator ranks = {};            ///< only `fft` supports more than one
+  Communicator ranks = {};            ///< of the run, each with a part of the particles
 };
 
 /// Computes self-gravity by one method.

@@ -20,6 +20,8 @@
 
 namespace keeler::contact_solver {
 class RestingContacts;
+struct KickPart;
+struct RestingStep;
 } // namespace keeler::contact_solver
 
 namespace keeler::decomposition {
@@ -56,8 +58,7 @@ struct TimeSplit {
 class Simulation {
 public:
   /// Starts a run from a patch, at time zero. Collective, as all that follows from it: each rank gives any part of the
-  /// particles, and the root the rest of the patch. Throws InvariantError if particles overlap by more than rounding,
-  /// UsageError for settings that cannot be distributed.
+  /// particles, and the root the rest of the patch. Throws InvariantError if particles overlap by more than rounding.
   Simulation(const Scene& scene, const Patch& start, const Communicator& ranks = {});
 
   /// Continues a run from a state, bit for bit. Collective: each rank gives any part of the particles, with their
@@ -87,8 +88,6 @@ public:
   const SimulationState& state() const { return state_; } ///< at this boundary
   /// Moves the state out, its arrays in their order in memory. The simulation must not be used afterwards.
   SimulationState take_state() && { return std::move(state_); }
-  /// Throws UsageError for settings of a scene with `count` particles that cannot be distributed.
-  static void require_distributable(const Scene& scene, std::size_t count);
 
   const Communicator& ranks() const { return ranks_; } ///< of the run
   /// Returns the number of particles of all ranks.
@@ -111,8 +110,14 @@ public:
   /// Returns a patch after advance() has thrown: at the last boundary or, within a drift, at the time of the last
   /// contact.
   Patch patch_at_break() const;
-  /// Returns that time, in rad from the epoch of the elements.
-  double time_at_break() const { return drifting_ ? drift_.reached() : -0.5 * state_.step_length; }
+  /// Calls piece(patch) on the root for the particles of all ranks after advance() has thrown on all of them, as
+  /// visit_patch() does, but without those that `keeps`(patch, k) says no to; before them begin(frame, count), on the
+  /// root. Returns the number of those left out. Collective.
+  std::size_t visit_at_break(std::size_t rows, const std::function<bool(const Patch&, std::size_t)>& keeps,
+                             const std::function<void(const Patch&, std::size_t)>& begin,
+                             const std::function<void(const Patch&)>& piece) const;
+  /// Returns that time, in rad from the epoch of the elements. Collective, as the two that follow from it.
+  double time_at_break() const { return drifting_ ? ranks_.max(drift_.reached()) : -0.5 * state_.step_length; }
   double offset_at_break() const; ///< the box's shear offset at that time, m
 
   /// Returns the particles at this boundary as forces see them. Valid until the next step.
@@ -127,6 +132,8 @@ public:
   /// Returns the deepest overlap of two particles at this boundary in units of the sum of their radii; 0 if there is
   /// none. Collective. May change the order in memory; the next step rebuilds its lists.
   double largest_overlap();
+  /// Returns that overlap with its two particles; collective. On one rank nothing in memory changes.
+  cells::Overlap deepest_overlap();
 
   /// Returns the balance of the energy of random motions. Collective.
   EnergyBalance balance() const;
@@ -157,6 +164,12 @@ private:
   void collide_distributed();
   cells::Overlap largest_overlap_distributed();
   decomposition::Holding holding();
+  // contacts at rest in distributed runs (distributed_resting.cpp)
+  void with_members_of_ranks(std::span<const contact_solver::KickPart> parts,
+                             const std::function<void(const contact_solver::RestingStep&)>& function);
+  std::vector<std::uint32_t> own_among(std::span<const std::uint64_t> ids, std::size_t own);
+  void note_ids_at_rest(const Particles& members);
+  void mark_at_rest();
 
   void collide();
   collision::KickInterval kicks_of_drift() const;
@@ -179,7 +192,9 @@ private:
   void note_slow_pairs();
   void persist_contacts(double before);
   void persist_contacts_second_half();
-  template<class Function> void with_kicks(double before, const Function& function);
+  std::vector<contact_solver::KickPart> kick_parts(double before);
+  contact_solver::RestingStep resting_step(Particles& particles, std::span<const contact_solver::KickPart> kicks) const;
+  void with_members(double before, const std::function<void(const contact_solver::RestingStep&)>& function);
   bool kick_due(std::size_t f) const { return state_.step % ticks_between_kicks(f) == 0; }
 
   Scene scene_;
@@ -192,9 +207,11 @@ private:
   std::vector<std::unique_ptr<forces::Force>> forces_; // in the order of state_.forces
   std::unique_ptr<contact_solver::RestingContacts> resting_;
   std::vector<std::uint8_t> at_rest_; // by particle: does it rest on another one in this kick interval? Empty: none
+  std::vector<std::uint64_t> ids_at_rest_;      // on several ranks: the ids of such particles of all ranks, ascending
+  std::vector<std::uint32_t> own_by_id_;        // on several ranks: own particles in the order of ids; empty: not known
   std::unique_ptr<decomposition::Blocks> blocks_; // null unless distributed
-  std::vector<std::size_t> moonlet_indices_;      // in the store; `elsewhere` on another rank
-  std::vector<double> moonlet_wraps_;             // shift in x and y of each by this wrap, m
+  std::vector<std::size_t> moonlet_indices_;    // in the store; `elsewhere` on another rank
+  std::vector<double> moonlet_wraps_;           // shift in x and y of each by this wrap, m
   TimeSplit split_;
 };
 

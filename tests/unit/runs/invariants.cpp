@@ -118,12 +118,12 @@ TEST_CASE("particles that go, or change their size, are told") {
 TEST_CASE("an overlap beyond rounding is told, with its pair and its depth") {
   const Stepped run;
   Patch patch = run.simulation.patch();
-  CHECK(fault_of_overlap(patch).empty());
+  CHECK(fault_of_overlap(cells::largest_overlap(patch)).empty());
   const double distance = (patch.radii[7] + patch.radii[30]) * (1.0 - 1e-6);
   patch.positions[30] = patch.positions[7] + Vec3(0.0, 0.0, distance);
   patch.positions[7].z() += 500.0;
   patch.positions[30].z() += 500.0;
-  CHECK(fault_of_overlap(patch) == "particles 7 and 30 overlap by 1e-6 of their radius sum (1e-08 is allowed)");
+  CHECK(fault_of_overlap(cells::largest_overlap(patch)) == "particles 7 and 30 overlap by 1e-6 of their radius sum (1e-08 is allowed)");
 }
 
 TEST_CASE("a velocity that one particle alone has got is told by the sums and by the energy") {
