@@ -10,12 +10,14 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 from made_pages import SOURCE, digest, faults_of_marks, filled, lines_like, marks, read_pages
 from made_parts import MANIFEST, Stop, code_of, git, processor, read_manifest, read_parts, why_stale, write_manifest
 from made_values import parsed, printed
 
 WORK = SOURCE / "build" / "remake"
+BUILD = Path(os.environ.get("KEELER_BUILD", SOURCE / "build" / "default"))
 
 
 class Progress:
@@ -42,8 +44,8 @@ def run_step(command, folder, output, written, progress, spent):
     if running.exists():  # killed in it: what `keeler run` left stands in the way of the same command
         for left in re.findall(r"keeler run [^;&|]*-o (\S+)", command):
             shutil.rmtree(folder / left, ignore_errors=True)
-    environment = dict(os.environ, ROOT=str(SOURCE), PAGES=str(written), PATH=f"{SOURCE / 'build' / 'default'}:{os.environ['PATH']}", OMP_WAIT_POLICY="passive",
-                       PYTHONPATH=str(SOURCE / "build" / "default" / "python"), MPLBACKEND="Agg")
+    environment = dict(os.environ, ROOT=str(SOURCE), PAGES=str(written), PATH=f"{BUILD}:{os.environ['PATH']}", OMP_WAIT_POLICY="passive",
+                       PYTHONPATH=str(BUILD / "python"), MPLBACKEND="Agg")
     with open(running, "wb") as out, open(folder / "errors", "wb") as errors:
         child = subprocess.Popen(["bash", "-euo", "pipefail", "-c", command], cwd=folder, env=environment, stdout=out, stderr=errors,
                                  start_new_session=True)
@@ -62,9 +64,9 @@ def run_step(command, folder, output, written, progress, spent):
     return time.monotonic() - begun
 
 
-def results_of(part, progress, folder, written):
+def results_of(part, code, progress, folder, written):
     """Runs the steps of a part that are still to be run, with figures below `written`. Returns their outputs and the seconds of all."""
-    key = digest(json.dumps([part.steps, code_of(part)]))
+    key = digest(json.dumps([part.steps, code]))
     if not (folder / "key").exists() or (folder / "key").read_text() != key:
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
@@ -130,7 +132,7 @@ def remake(chosen):
     progress, failed = Progress(sum(part.seconds for part in chosen)), []
     for count, part in enumerate(chosen, 1):
         try:
-            results, seconds = results_of(part, progress, WORK / part.name, SOURCE)
+            results, seconds = results_of(part, code_of(part), progress, WORK / part.name, SOURCE)
             for page, text in new_pages(part, read_pages(), results, WORK / part.name).items():
                 (SOURCE / page).write_text(text, encoding="utf-8")
         except Stop as error:
@@ -153,7 +155,7 @@ def differences(part, folder):
     """Runs a part in `folder`, and yields what differs from the pages."""
     written, pages = folder / "written", read_pages()
     shutil.rmtree(folder, ignore_errors=True)
-    results, _ = results_of(part, Progress(part.seconds), folder, written)
+    results, _ = results_of(part, "", Progress(part.seconds), folder, written)
     for page, text in new_pages(part, pages, results, folder).items():
         for old, new in zip(marks({page: pages[page]}), marks({page: text})):
             if old != new:
@@ -240,7 +242,7 @@ def main():
     options.add_argument("names", nargs="*", metavar="NAME")
     for flag, meaning in (("all", "every part, stale or not"), ("untimed", "leave out the parts that quote times"), ("list", "list the parts"),
                           ("stale", "list the stale parts"), ("test", "compare marks, pages and docs/made.json"),
-                          ("check", "run parts, compare with the pages, write nothing")):
+                          ("check", "run parts, compare with the pages, write nothing; KEELER_BUILD names another build folder")):
         options.add_argument(f"--{flag}", action="store_true", help=meaning)
     asked = options.parse_args()
     parts = read_parts()

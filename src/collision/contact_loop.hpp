@@ -186,7 +186,9 @@ private:
                                   .tangential_speed = (law.velocity + speed * normal).norm(),
                                   .energy_lost = contact.energy_lost,
                                   .radius_sum = distance,
-                                  .contact_point = point});
+                                  .contact_point = point,
+                                  .normal = normal,
+                                  .impulse = impulse});
 
     change(event.low, a.elements, event.time);
     change(event.high, b.elements, event.time);

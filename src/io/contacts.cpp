@@ -43,6 +43,27 @@ template<class Column> void for_each_column(const Column& column) {
   column(
       "Fast", "1", "1: faster than collisions.elastic_below_speed; 0: slower, and elastic",
       [](auto& row) -> auto& { return row.fast; });
+  column(
+      "NormalX", "1", "line of centres, a unit vector from the particle LowID to HighID: radial",
+      [](auto& row) -> auto& { return row.normal.x(); });
+  column(
+      "NormalY", "1", "line of centres: along the orbit", [](auto& row) -> auto& { return row.normal.y(); });
+  column(
+      "NormalZ", "1", "line of centres: vertical", [](auto& row) -> auto& { return row.normal.z(); });
+  column(
+      "ImpulseX", "kg m/s", "momentum that the particle HighID got, LowID the opposite: radial",
+      [](auto& row) -> auto& { return row.impulse.x(); });
+  column(
+      "ImpulseY", "kg m/s", "momentum that the particle HighID got: along the orbit",
+      [](auto& row) -> auto& { return row.impulse.y(); });
+  column(
+      "ImpulseZ", "kg m/s", "momentum that the particle HighID got: vertical",
+      [](auto& row) -> auto& { return row.impulse.z(); });
+}
+
+// Files of the same version that were written before there were these columns lack them; their rows have zeros.
+bool may_be_absent(const std::string& column) {
+  return column.starts_with("Normal") ? column.size() == std::string("NormalX").size() : column.starts_with("Impulse");
 }
 
 // Type of a number in the file: a bool is stored as one byte.
@@ -96,6 +117,8 @@ ContactFile read_contacts(const std::filesystem::path& file) {
     read.rows.resize(hdf5::layout_of_dataset(hdf5::open_dataset(group, "Step")).count());
     for_each_column([&](const std::string& name, std::string_view, std::string_view, const auto& member) {
       using T = StoredType<decltype(member)>;
+      if (may_be_absent(name) && !hdf5::exists(group, name.c_str()))
+        return;
       const hdf5::Handle dataset = hdf5::open_dataset(group, name);
       if (hdf5::layout_of_dataset(dataset).shape != hdf5::Shape{read.rows.size()})
         throw IoError(fmt::format("its column {} has another length than its column Step", name));

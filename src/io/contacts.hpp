@@ -24,6 +24,8 @@ struct ContactRow {
   double normal_speed = 0.0;     ///< approach speed along the line of centres, m/s
   double tangential_speed = 0.0; ///< relative speed across it before the contact, m/s
   bool fast = false;             ///< faster than v_cut
+  Vec3 normal = Vec3::Zero();    ///< along the line of centres, from the lower id to the higher one
+  Vec3 impulse = Vec3::Zero();   ///< that the particle with the higher id got, kg m/s
 
   friend bool operator==(const ContactRow&, const ContactRow&) = default;
 };

@@ -90,7 +90,8 @@ void ContactLog::recorded(std::span<const collision::CollisionRecord> records) {
     if (!is_logged(*scene_.output.collisions, record, time, omega))
       continue;
     rows_.push_back({step, time, record.contact_point, record.low_id, record.high_id, record.image,
-                     record.normal_speed * omega, record.tangential_speed * omega, record.fast});
+                     record.normal_speed * omega, record.tangential_speed * omega, record.fast, record.normal,
+                     record.impulse * omega});
     ++counters_.rows;
   }
 }

@@ -30,7 +30,7 @@ prints "what dominates, as text" "  most of it                       gravity"
 accepts "overrides before and after" check --set particles.count=500 "$good" --set 'box.size=[100, 100]'
 prints "overrides before and after" "particles                          500"
 accepts "a box of 4 lambda_cr" check "$good"
-prints "a box of 4 lambda_cr" "note: the box spans 4 lambda_cr: in wakes, a box of 4 x 4 has 12 % less velocity dispersion"
+prints "a box of 4 lambda_cr" "note: the box is 4 lambda_cr long along the orbit: the viscosity of wakes goes with this length"
 accepts "a quality" check "$good" --set quality=strict
 prints "a quality" "gravity                            fft, requested rms force error 0.001"
 prints "a quality" "from kick to kick                  0.002 orbits"

@@ -59,22 +59,23 @@ Row growth_row(const std::string& wave_of, const Wave& wave, double expected, do
           .measured = wave.growth.rate,
           .error = *wave.growth.error,
           .expected = expected,
-          .tolerance = tolerance,
-          .tolerance_is = tolerance_is,
+          .tolerance = tolerance + 2.0 * *wave.growth.error,
+          .tolerance_is = fmt::format("{}, and twice the error", tolerance_is),
           .source = source,
           .command = wave.command};
 }
 
 Row ratio_row(const char* what, const Wave& wave, const Wave& other, double expected, double tolerance,
               const char* tolerance_is) {
-  const double ratio = wave.growth.rate / other.growth.rate;
+  const double ratio = wave.growth.rate / other.growth.rate,
+               error = std::fabs(ratio) *
+                       std::hypot(*wave.growth.error / wave.growth.rate, *other.growth.error / other.growth.rate);
   return {.what = what,
           .measured = ratio,
-          .error = std::fabs(ratio) *
-                   std::hypot(*wave.growth.error / wave.growth.rate, *other.growth.error / other.growth.rate),
+          .error = error,
           .expected = expected,
-          .tolerance = tolerance,
-          .tolerance_is = tolerance_is,
+          .tolerance = tolerance + 2.0 * error,
+          .tolerance_is = fmt::format("{}, and twice the error", tolerance_is),
           .source = "k^2, of long waves in a viscous fluid (Schmit & Tscharnuter 1995)",
           .command = "of the same runs"};
 }

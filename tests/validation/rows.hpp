@@ -54,11 +54,15 @@ struct Ran {
 };
 Ran run_example(const std::string& example, const std::vector<std::string>& overrides);
 
-/// Keys for self-gravity wakes at a Hill parameter r_h: 8 x 8 critical wavelengths of the A ring, equal spheres of 1 m.
-std::vector<std::string> wakes(double hill, int seed, double orbits);
+/// Keys for self-gravity wakes at a Hill parameter r_h: equal spheres of 1 m in the A ring, in a box of so many
+/// critical wavelengths radially, and 8 along the orbit.
+std::vector<std::string> wakes(double hill, int seed, double orbits, int width = 8);
 
-/// Mean of a column of the series from an orbit on.
-double mean_since(const Ran& ran, const char* column, double orbit);
+/// Mean of a column of the series from an orbit on, with its error by blocks.
+Estimate mean_since(const Ran& ran, const char* column, double orbit);
+
+/// Mean of independent values, one per seed for example, with its standard error.
+Estimate mean_of(const std::vector<double>& values);
 
 /// Viscosities and balance from an orbit on.
 runs::Transport transport_since(const Ran& ran, double orbit);

@@ -5,6 +5,8 @@
 #include <keeler/runs/run.hpp>
 #include <keeler/runs/stored_patches.hpp>
 #include <keeler/scene/load.hpp>
+#include <keeler/statistics/scatter.hpp>
+#include <keeler/statistics/time_series.hpp>
 
 #include <fmt/format.h>
 
@@ -28,15 +30,18 @@ Ran run_example(const std::string& example, const std::vector<std::string>& over
   return ran;
 }
 
-double mean_since(const Ran& ran, const char* column, double orbit) {
+Estimate mean_since(const Ran& ran, const char* column, double orbit) {
   const std::vector<double>&values = ran.series.of(column), &orbits = ran.series.of("time_orbits");
-  double sum = 0.0, count = 0.0;
+  std::vector<double> later;
   for (std::size_t k = 0; k < values.size(); ++k)
-    if (orbits[k] >= orbit) {
-      sum += values[k];
-      count += 1.0;
-    }
-  return sum / count;
+    if (orbits[k] >= orbit)
+      later.push_back(values[k]);
+  return statistics::block_mean(later);
+}
+
+Estimate mean_of(const std::vector<double>& values) {
+  const statistics::Scatter scatter = statistics::scatter_of(values);
+  return {scatter.mean, scatter.mean_error()};
 }
 
 runs::Transport transport_since(const Ran& ran, double orbit) {

@@ -75,6 +75,8 @@ struct CollisionRecord {
   double energy_lost = 0.0;          ///< kg m² rad⁻²; of a contact that kicks do not resolve, of either sign
   double radius_sum = 0.0;           ///< m
   Vec3 contact_point = Vec3::Zero(); ///< on the surface of the particle with the lower id, as that is stored, m
+  Vec3 normal = Vec3::Zero();        ///< unit vector along the line of centres, from the lower id to the higher one
+  Vec3 impulse = Vec3::Zero();       ///< that the particle with the higher id got, friction included, kg m rad⁻¹
 };
 
 /// Observes drifts, and may choose how they are carried out: for measurements and tests. The result is the same.

@@ -33,7 +33,8 @@ inline bool same_bits(const collision::CollisionRecord& a, const collision::Coll
   return same_bits(a.time, b.time) && a.low_id == b.low_id && a.high_id == b.high_id && a.image == b.image &&
          same_bits(a.normal_speed, b.normal_speed) && a.fast == b.fast &&
          same_bits(a.tangential_speed, b.tangential_speed) && same_bits(a.energy_lost, b.energy_lost) &&
-         same_bits(a.radius_sum, b.radius_sum) && a.contact_point == b.contact_point;
+         same_bits(a.radius_sum, b.radius_sum) && a.contact_point == b.contact_point && a.normal == b.normal &&
+         a.impulse == b.impulse;
 }
 
 } // namespace keeler::test

@@ -105,9 +105,24 @@ TEST_CASE("the log holds what an observer sees, in SI") {
     CHECK(row.normal_speed == r.normal_speed * omega);
     CHECK(row.tangential_speed == r.tangential_speed * omega);
     CHECK(row.fast == r.fast);
+    CHECK(row.normal == r.normal);
+    CHECK(row.impulse == r.impulse * omega);
+    CHECK(row.normal.norm() == doctest::Approx(1.0));
     CHECK(r.radius_sum == doctest::Approx(patch.radii[r.low_id] + patch.radii[r.high_id]));
     CHECK(std::fabs(row.position.x()) < scene.size_x);
     CHECK((k == 0 || rows[k - 1].time_orbits <= row.time_orbits));
+  }
+  // smooth spheres: the impulse is along the line of centres and turns the approach into the rebound
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const io::ContactRow& row = rows[k];
+    const double low = patch.masses[row.low_id], high = patch.masses[row.high_id], reduced = low * high / (low + high);
+    const double push = row.impulse.dot(row.normal), rebound = push / reduced - row.normal_speed;
+    CHECK((row.impulse - push * row.normal).norm() < 1e-12 * push);
+    const double energy = 0.5 * reduced * (row.normal_speed * row.normal_speed - rebound * rebound);
+    CHECK(onlooker.records[k].energy_lost * omega * omega ==
+          doctest::Approx(energy).epsilon(1e-9).scale(reduced * row.normal_speed * row.normal_speed));
+    const Vec3 centre = row.position - patch.radii[row.low_id] * row.normal; // of the particle with the lower id
+    CHECK(std::fabs(centre.z()) < scene.size_x);
   }
   double lost = 0.0;
   std::uint64_t count = 0;
