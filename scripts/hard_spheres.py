@@ -187,7 +187,7 @@ def main():
         sweep(grid, more)
     text = PAGE.read_text()
     for name, made in (("states", states), ("wakes", wakes), ("kicks", kicks), ("dense", dense), ("cuts", cuts), ("pile", pile)):
-        text, count = re.subn(rf"(<!-- {name} -->\n).*?(<!-- end -->)", lambda m: m[1] + made() + m[2], text, flags=re.S)
+        text, count = re.subn(rf"(<!--made:hard-spheres.{name}-->\n).*?(<!--/-->)", lambda m: m[1] + made() + m[2], text, flags=re.S)
         if count != 1:
             sys.exit(f"{PAGE}: the marks of the table '{name}' are not there once")
     PAGE.write_text(text)

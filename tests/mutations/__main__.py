@@ -15,7 +15,7 @@ from faults import FAULTS
 
 SOURCE = Path(__file__).resolve().parents[2]
 WORK = SOURCE / "build" / "mutations"
-BEGIN, END = "<!-- table -->\n", "<!-- end of table -->\n"
+BEGIN, END = "<!--made:mutations.table-->\n", "<!--/-->\n"
 
 
 class Unfit(Exception):

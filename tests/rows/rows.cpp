@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <exception>
@@ -21,11 +22,12 @@ namespace {
 
 struct Options {
   bool quick = false, extra = false;
-  std::string only, page;
+  std::vector<std::string> only; ///< empty: no names were given
+  std::string page;
 
   bool selects(const Subject& subject) const {
     if (!only.empty())
-      return subject.name == only;
+      return std::find(only.begin(), only.end(), subject.name) != only.end();
     return quick ? subject.length == Length::quick : (subject.length == Length::extra) == extra;
   }
 };
@@ -38,7 +40,7 @@ bool read_options(int count, char** words, Options& options) {
     else if (word == "--long")
       options.extra = true;
     else if (word == "--only" && k + 1 < count)
-      options.only = words[++k];
+      options.only.push_back(words[++k]);
     else if (word == "--write" && k + 1 < count)
       options.page = words[++k];
     else
@@ -103,21 +105,21 @@ std::vector<Shown> measure(const Subject& subject) {
 int measure_all(const Options& options, const std::vector<Subject>& subjects, const Page& page) {
   Sections sections;
   std::map<Verdict, int> counts;
-  bool any = false;
+  std::size_t found = 0;
   for (const Subject& subject : subjects) {
     Section& section = sections[subject.section];
     if (!options.selects(subject)) {
       section.whole = false;
       continue;
     }
-    any = true;
+    ++found;
     for (Shown& row : measure(subject)) {
       ++counts[row.verdict];
       section.rows.push_back(std::move(row));
     }
   }
-  if (!any) {
-    fmt::print(stderr, "no such subject; the names are:\n");
+  if (found < std::max<std::size_t>(options.only.size(), 1)) {
+    fmt::print(stderr, "no such subject, or one named twice; the names are:\n");
     for (const Subject& subject : subjects)
       fmt::print(stderr, "  {}\n", subject.name);
     return 2;
@@ -137,7 +139,7 @@ int measure_all(const Options& options, const std::vector<Subject>& subjects, co
 int measure_rows(int count, char** words, const std::vector<Subject>& subjects, const Page& page) {
   Options options;
   if (!read_options(count, words, options)) {
-    fmt::print(stderr, "usage: {} [--quick | --long] [--only NAME] [--write FILE]\n", words[0]);
+    fmt::print(stderr, "usage: {} [--quick | --long] [--only NAME]... [--write FILE]\n", words[0]);
     return 2;
   }
   try {
