@@ -59,11 +59,14 @@ template<class Column> void for_each_column(const Column& column) {
   column(
       "ImpulseZ", "kg m/s", "momentum that the particle HighID got: vertical",
       [](auto& row) -> auto& { return row.impulse.z(); });
+  column(
+      "AtRest", "1", "1: a contact at rest, with the impulse that carries a kick; 0: a collision",
+      [](auto& row) -> auto& { return row.at_rest; });
 }
 
 // Files of the same version that were written before there were these columns lack them; their rows have zeros.
 bool may_be_absent(const std::string& column) {
-  return column.starts_with("Normal") ? column.size() == std::string("NormalX").size() : column.starts_with("Impulse");
+  return column == "AtRest" || column.starts_with("Impulse") || (column.starts_with("Normal") && column.size() == 7);
 }
 
 // Type of a number in the file: a bool is stored as one byte.

@@ -26,6 +26,7 @@ struct ContactRow {
   bool fast = false;             ///< faster than v_cut
   Vec3 normal = Vec3::Zero();    ///< along the line of centres, from the lower id to the higher one
   Vec3 impulse = Vec3::Zero();   ///< that the particle with the higher id got, kg m/s
+  bool at_rest = false;          ///< a contact at rest: its impulse carries a kick
 
   friend bool operator==(const ContactRow&, const ContactRow&) = default;
 };

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <cmath>
+#include <unordered_map>
 
 namespace keeler::runs {
 namespace {
@@ -92,6 +94,52 @@ void ContactLog::recorded(std::span<const collision::CollisionRecord> records) {
     rows_.push_back({step, time, record.contact_point, record.low_id, record.high_id, record.image,
                      record.normal_speed * omega, record.tangential_speed * omega, record.fast, record.normal,
                      record.impulse * omega});
+    ++counters_.rows;
+  }
+}
+
+void ContactLog::add_contacts_at_rest() {
+  assert(simulation_ != nullptr && scene_.output.collisions);
+  const scene::ContactLogSettings& settings = *scene_.output.collisions;
+  const simulation::SimulationState& state = simulation_->state();
+  const contact_solver::RestingState& resting = state.resting;
+  if (!settings.at_rest || resting.pairs.empty())
+    return;
+  const std::int64_t interval = state.control.kick > 0 ? state.control.kick : scene_.gravity->kick_every;
+  if (state.step % interval != 0)
+    return;
+  const Particles& particles = state.particles;
+  std::unordered_map<std::uint64_t, std::size_t> index; // of each id
+  for (std::size_t k = 0; k < particles.size(); ++k)
+    index[particles.ids[k]] = k;
+  const forces::Boundary boundary = simulation_->boundary();
+  const auto position = [&](std::size_t k) {
+    return state_at(particles.bodies[k].elements, boundary.frequencies, boundary.rotation()).position;
+  };
+  const double omega = scene_.planet.orbital_frequency, time = static_cast<double>(state.step) * scene_.time.step;
+  for (std::size_t k = 0; k < resting.pairs.size(); ++k) {
+    const auto [low, high] = resting.pairs[k];
+    const std::size_t i = index[low], j = index[high];
+    const double radius = particles.bodies[i].radius;
+    collision::CollisionRecord record{};
+    record.low_id = low, record.high_id = high;
+    record.radius_sum = radius + particles.bodies[j].radius;
+    if (!is_logged(settings, record, time, omega))
+      continue;
+    const Vec3 separation = resting.loads[k].separation, normal = separation.normalized(), at = position(i);
+    const Vec3 shift = separation - (position(j) - at);
+    record.image.nx = static_cast<std::int32_t>(std::lround(shift.x() / boundary.box.size_x));
+    record.image.ny =
+        static_cast<std::int32_t>(std::lround((shift.y() + record.image.nx * boundary.offset) / boundary.box.size_y));
+    rows_.push_back({.step = state.step,
+                     .time_orbits = time,
+                     .position = at + radius * normal,
+                     .low_id = low,
+                     .high_id = high,
+                     .image = record.image,
+                     .normal = normal,
+                     .impulse = resting.loads[k].impulse * omega * normal,
+                     .at_rest = true});
     ++counters_.rows;
   }
 }

@@ -45,6 +45,9 @@ public:
   /// Registers this log for the contacts of all following steps. The log must outlive them.
   void watch(Simulation& simulation);
 
+  /// Adds the contacts at rest that carry the kick at this boundary, where the scene asks for them. Call it after each
+  /// step.
+  void add_contacts_at_rest();
   /// Writes the files that are full. Call it after each step.
   void write_full_files();
   /// Writes all rows so far. Call it before a checkpoint.

@@ -154,7 +154,10 @@ void Recorder::contacts() {
   if (!scene_.output.collisions)
     return;
   const Stopwatch watch(costs_.contacts);
-  ranks_.on_root([&] { contact_log_->write_full_files(); });
+  ranks_.on_root([&] {
+    contact_log_->add_contacts_at_rest();
+    contact_log_->write_full_files();
+  });
 }
 
 void Recorder::require_sound(const simulation::SimulationState& state, const diagnostics::ParticleMeans& means) {

@@ -281,6 +281,12 @@ std::vector<Key> course_keys() {
        .range = up_to(1),
        .effect = output,
        .former_name = "share"},
+      {.path = "output.collisions.at_rest",
+       .type = choice,
+       .fallback = "\"omitted\"",
+       .meaning = "contacts at rest: logged at each kick with the impulse that carries it, or not",
+       .effect = output,
+       .choices = {"omitted", "logged"}},
   };
 }
 

@@ -100,9 +100,9 @@ std::vector<ForceSettings> read_external_forces(const Scene& scene, config::Sett
 std::optional<ContactLogSettings> read_contact_log(config::Settings& settings) {
   if (!settings.has("output.collisions"))
     return {};
-  return ContactLogSettings{settings.number("output.collisions.min_speed"),
-                            settings.number("output.collisions.min_radius_sum"),
-                            settings.number("output.collisions.fraction")};
+  return ContactLogSettings{
+      settings.number("output.collisions.min_speed"), settings.number("output.collisions.min_radius_sum"),
+      settings.number("output.collisions.fraction"), settings.text("output.collisions.at_rest") == "logged"};
 }
 
 void read_start(Scene& scene, config::Settings& settings, const std::string& name) {

@@ -133,6 +133,7 @@ struct ContactLogSettings {
   double min_speed = 0.0;      ///< normal speed, m/s
   double min_radius_sum = 0.0; ///< m
   double fraction = 1.0;       ///< of these contacts, drawn by a hash
+  bool at_rest = false;        ///< contacts at rest too, at each kick
 };
 
 /// When a run writes.

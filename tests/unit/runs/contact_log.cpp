@@ -196,6 +196,60 @@ TEST_CASE("the log of a run does not depend on threads, and the run not on the l
   CHECK(files::read_text(work / "share" / "impact_speeds.csv") == files::read_text(work / "1" / "impact_speeds.csv"));
 }
 
+TEST_CASE("contacts at rest are logged at each kick, with the impulse that holds the pair apart") {
+  const TemporaryFolder work;
+  const std::vector<std::string> pile = {"particles.density=1500", "particles.sizes={law=\"equal\",radius=1.0}",
+                                         "particles.aggregate=[{count=100,position=[0.0,0.0,0.0],filling_factor=0.55}]",
+                                         "gravity={solver=\"direct\",kick_every=2,resting_contacts=\"carried\"}",
+                                         "output.collisions={at_rest=\"logged\",min_radius_sum=1.0}"};
+  const Scene scene = small_scene(pile);
+  const RunFolder folder(work.path());
+  Simulation simulation(scene, initial_patch(scene));
+  ContactLog log = new_log(folder, scene, 1'000'000);
+  log.watch(simulation);
+  std::size_t expected = 0, kicks = 0;
+  std::vector<contact_solver::RestingLoad> loads;
+  Patch patch = simulation.patch();
+  while (simulation.state().step < 40) {
+    simulation.advance();
+    log.add_contacts_at_rest();
+    if (simulation.state().step % 2 != 0)
+      continue;
+    loads = simulation.state().resting.loads;
+    expected += loads.size(), ++kicks;
+    patch = simulation.patch();
+  }
+  log.write_all();
+  std::vector<io::ContactRow> resting, last;
+  for (const io::ContactRow& row : rows_in(work.path()))
+    if (row.at_rest)
+      resting.push_back(row);
+  REQUIRE(resting.size() == expected);
+  REQUIRE(loads.size() > 20);
+  last.assign(resting.end() - static_cast<std::ptrdiff_t>(loads.size()), resting.end());
+  const double omega = scene.planet.orbital_frequency;
+  for (std::size_t k = 0; k < last.size(); ++k) {
+    const io::ContactRow& row = last[k];
+    CHECK(row.step == 40);
+    CHECK(row.impulse.dot(row.normal) == doctest::Approx(loads[k].impulse * omega));
+    CHECK(row.impulse.dot(row.normal) >= 0.0); // contacts push
+    CHECK((row.position - patch.positions[row.low_id]).norm() == doctest::Approx(1.0));
+    const Vec3 other = patch.positions[row.high_id] + patch.box.displacement(row.image, patch.offset);
+    CHECK((row.position - other).norm() == doctest::Approx(1.0).epsilon(1e-3)); // at contact, but for the scheme's gaps
+    CHECK(row.normal_speed == 0.0);
+    CHECK_FALSE(row.fast);
+  }
+  const Scene without = small_scene([&] {
+    std::vector<std::string> keys = pile;
+    keys.back() = "output.collisions={min_radius_sum=1.0}";
+    return keys;
+  }());
+  ContactLog silent = new_log(RunFolder(work / "other"), without);
+  silent.watch(simulation);
+  silent.add_contacts_at_rest();
+  CHECK(silent.counters().rows == 0);
+}
+
 TEST_CASE("a run that goes on from a checkpoint has the log of a run without a break") {
   const TemporaryFolder work;
   run(work / "whole", logged);

@@ -105,6 +105,7 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
       {"output.collisions.min_speed", {"1e-4", output}},
       {"output.collisions.min_radius_sum", {"1.0", output}},
       {"output.collisions.fraction", {"0.5", output}},
+      {"output.collisions.at_rest", {"logged", output}},
   };
   const std::set<std::string> needless = {"quality", // it says other keys
                                           "planet.preset",
