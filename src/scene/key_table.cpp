@@ -285,8 +285,8 @@ std::vector<Key> course_keys() {
        .type = choice,
        .fallback = "\"omitted\"",
        .meaning = "contacts at rest: logged at each kick with the impulse that carries it, or not",
-       .effect = output,
-       .choices = {"omitted", "logged"}},
+       .choices = {"omitted", "logged"},
+       .effect = output},
   };
 }
 
