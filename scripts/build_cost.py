@@ -1,10 +1,11 @@
 """What it costs to compile Keeler: processor seconds of every compiler call and link, by folder, from an empty build
 folder and without a compiler cache.
 
-    scripts/build-cost [--program] [--lines] [--objects N] [-D...]
+    scripts/build-cost [--demo|--program] [--lines] [--objects N] [-D...]
     scripts/build-cost --tests [FOLDER]
 
---program    only what scripts/demo compiles, in place of all that scripts/test does
+--demo       only what scripts/demo compiles, in place of all that scripts/test does
+--program    only the program, with all its commands
 --lines      also lines behind each object once its headers are in, of Keeler and of others (a minute more)
 --objects N  also the N costliest objects
 -D...        goes to CMake: -DKEELER_UNITY=OFF compiles each source on its own
@@ -76,11 +77,11 @@ def compile_all(targets, definitions):
 
 
 def main(arguments):
-    program, lines, shown, definitions = False, False, 0, []
+    target, lines, shown, definitions = None, False, 0, []
     while arguments:
         word = arguments.pop(0)
-        if word == "--program":
-            program = True
+        if word in ("--demo", "--program"):
+            target = "keeler_demo" if word == "--demo" else "keeler"
         elif word == "--lines":
             lines = True
         elif word == "--objects":
@@ -93,7 +94,7 @@ def main(arguments):
             print(__doc__, file=sys.stderr)
             return 2
     wall, calls = compile_all(
-        ["--target", "keeler"] if program else [], [*definitions, f"-DKEELER_TESTS={'OFF' if program else 'ON'}"])
+        ["--target", target] if target else [], [*definitions, f"-DKEELER_TESTS={'OFF' if target else 'ON'}"])
     read = {}
     if lines:
         entries = [e for e in json.loads((BUILD / "compile_commands.json").read_text()) if "/headers/" not in e["file"]]

@@ -1,13 +1,10 @@
 // keeler help, and the examples at the end of --help.
-#include "bench_numbers.hpp"
-#include "check_numbers.hpp"
 #include "command.hpp"
+#include "number_tables.hpp"
 #include "print.hpp"
 #include "usage.hpp"
 
 #include <keeler/core/suggest.hpp>
-#include <keeler/light/occultation_record.hpp>
-#include <keeler/light/photometry_record.hpp>
 #include <keeler/runs/measurement.hpp>
 #include <keeler/runs/series_columns.hpp>
 #include <keeler/runs/summary.hpp>
@@ -16,25 +13,19 @@
 
 #include <cassert>
 #include <memory>
+#include <utility>
 
 namespace keeler::cli {
 namespace {
 
-struct NumberTable {
-  const char* title;
-  std::vector<quantities::Quantity> quantities;
-};
-
 std::vector<NumberTable> number_tables() {
-  return {{"keeler analyze: a snapshot, or the steady part of a run", runs::measured_quantities()},
-          {"summary.json: results of a run (keeler run --json)", runs::summary_quantities()},
-          {"series.csv: time series of a run", runs::series_quantities()},
-          {"keeler photometry: a sight", light::photometry_quantities()},
-          {"keeler occultation: a line of sight", light::occultation_quantities()},
-          {"keeler occultation: the model of wakes", light::wake_model_quantities()},
-          {"keeler check", check_quantities()},
-          {"keeler bench step", step_bench_quantities()},
-          {"keeler bench drift", drift_bench_quantities()}};
+  std::vector<NumberTable> tables = {
+      {"keeler analyze: a snapshot, or the steady part of a run", runs::measured_quantities()},
+      {"summary.json: results of a run (keeler run --json)", runs::summary_quantities()},
+      {"series.csv: time series of a run", runs::series_quantities()}};
+  for (NumberTable& table : further_number_tables())
+    tables.push_back(std::move(table));
+  return tables;
 }
 
 std::string line_of(const quantities::Quantity& quantity) {

@@ -46,7 +46,7 @@ template<class Settings> struct StudyOptions {
   }
 };
 
-ExitCode stopped() {
+ExitCode continues_later() {
   say("stopped; the same command continues from here");
   return ExitCode::stopped;
 }
@@ -75,7 +75,7 @@ ExitCode of_finders(StudyOptions<study::FinderStudySettings>& options) {
   } catch (const Interrupted&) { // the finished measurements are in the folder
   }
   if (!finished)
-    return stopped();
+    return continues_later();
   print_results(options.settings.folder, {"report.md", "report.html", "finders.csv", "finders.json", "figures"});
   return ExitCode::done;
 }
@@ -101,7 +101,7 @@ ExitCode of_scene(StudyOptions<study::SceneStudySettings>& options) {
     settings.jobs = static_cast<std::size_t>(std::max(1, threads()));
   const batch::BatchResult result = options.carry_out([&] { return study_scene(settings, requests_from_signals()); });
   if (result.stopped)
-    return stopped();
+    return continues_later();
   print_results(settings.folder, {"report.md", "report.html", "study.csv", "settings.csv", "figures"});
   const auto say_missing = [](std::size_t count, const std::string& advice) {
     if (count > 0)
