@@ -3,7 +3,7 @@
 #include <keeler/simulation/simulation.hpp>
 
 #include <keeler/contact_solver/resting_contacts.hpp>
-#include <keeler/decomposition/slabs.hpp>
+#include <keeler/decomposition/blocks.hpp>
 #include <keeler/particles/order.hpp>
 
 #include <algorithm>
@@ -79,7 +79,7 @@ void Simulation::mark_at_rest() {
   if (ids_at_rest_.empty())
     return;
   const std::vector<std::uint64_t>& ids = state_.particles.ids;
-  const std::size_t own = slabs_->ghosts().own;
+  const std::size_t own = blocks_->ghosts().own;
   at_rest_.assign(ids.size(), 0);
   for (const std::uint32_t k : own_among(ids_at_rest_, own))
     at_rest_[k] = 1;
