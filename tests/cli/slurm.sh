@@ -16,21 +16,27 @@ density = 600.0
 sizes = { law = "equal", radius = 1.0 }
 [time]
 step = 2e-3
-end = 20.0
+end = 10.0
 [output]
-snapshot_every = 5.0
-checkpoint_every_minutes = 0.0
+snapshot_every = 2.5
+checkpoint_every = 0.5
 END
 
 mkdir "$work/bin"
-# mpirun: notes its own options, and runs the program once, with a wall time that cuts this run
+# mpirun: notes its own options, and runs the program once. While there is a file `interrupts` the run is stopped at its next
+# checkpoint, as by its wall time
 cat >"$work/bin/mpirun" <<END
 #!/bin/bash
 echo "\$*" >>"$work/launched"
 while [ "\$1" != keeler-mpi ]; do shift; done
 shift
-[ "\${*: -2:1}" = --wall-time ] || exit 99
-exec "$keeler" "\${@:1:\$#-1}" "\$(cat "$work/wall_time")"
+before=\$(ls "$work"/runs/*/checkpoint_* 2>/dev/null)
+"$keeler" "\$@" &
+while [ -e "$work/interrupts" ] && kill -0 \$! 2>/dev/null; do
+  [ "\$(ls "$work"/runs/*/checkpoint_*.h5 2>/dev/null)" = "\$before" ] || { kill -USR1 \$!; break; }
+  sleep 0.01
+done
+wait \$!
 END
 printf '#!/bin/bash\necho "$*" >>"%s/requeued"\n' "$work" >"$work/bin/scontrol"
 chmod +x "$work/bin"/*
@@ -44,18 +50,19 @@ task() {
   [ "$code" -eq "$1" ] || fail "exit $code instead of $1: $(tail -n 3 "$work/err")"
 }
 
-echo 0.4 >"$work/wall_time"
+touch "$work/interrupts"
 task 75
 task 75
+rm "$work/interrupts"
 [ "$(wc -l <"$work/requeued")" -eq 2 ] || fail "requeued: $(cat "$work/requeued")"
 grep -qx 'requeue 17' "$work/requeued" || fail "requeued: $(cat "$work/requeued")"
-echo 1000 >"$work/wall_time"
 task 0
 [ "$(wc -l <"$work/requeued")" -eq 2 ] || fail "a finished run was requeued"
 grep -q '"finished": true' "$work/runs/seed-3/summary.json" || fail "not finished"
 [ "$(grep -c 'keeler-mpi run' "$work/launched")-$(grep -c 'keeler-mpi resume' "$work/launched")" = 1-2 ] ||
   fail "launched: $(cat "$work/launched")"
 grep -q -- '-n 2 --map-by slot:PE=1' "$work/launched" || fail "launched: $(cat "$work/launched")"
+grep -q -- '--wall-time 42600$' "$work/launched" || fail "launched: $(cat "$work/launched")"
 runs 0 run "$work/scene.toml" -o "$work/whole" --set particles.seed=3
 same_state "a job array's run" "$work/whole" "$work/runs/seed-3"
 same_series "a job array's run" "$work/whole" "$work/runs/seed-3"
@@ -63,7 +70,7 @@ same_series "a job array's run" "$work/whole" "$work/runs/seed-3"
 # A node that failed before the first checkpoint left a folder; a scene that is wrong ends the task, and is not requeued.
 rm "$work/requeued"
 rm "$work/runs/seed-3"/checkpoint_*
-echo 0.4 >"$work/wall_time"
+touch "$work/interrupts"
 task 75
 rm "$work/requeued"
 rm -r "$work/runs"
