@@ -55,6 +55,7 @@ fi
 echo "=== the source archive, and scripts/package from it"
 "$source_dir/scripts/package" --source
 archive=$(echo "$source_dir"/build/package/keeler-*.tar.gz)
+commit=$(gzip -dc "$archive" | git get-tar-commit-id)
 fresh_system
 mkdir -p "$system$source_dir" # at the same path, which compiled objects in the cache depend on
 tar -C "$system$source_dir" --strip-components 1 -xf "$archive"
@@ -84,7 +85,6 @@ inside sh -c 'keeler check /usr/share/keeler/examples/a-ring-wakes/scene.toml'
 inside sh -c 'keeler report /srv/tutorial/first'
 grep -q 'THREE.' "$system/srv/tutorial/first/report.html" || { echo "FAILED: the report has no view"; exit 1; }
 
-commit=$(git -C "$source_dir" rev-parse HEAD)
 inside keeler run equilibrium -o /srv/first --set time.end=0.01 >/dev/null
 grep -qF "$commit" "$system/srv/first/summary.json" || { echo "FAILED: the program does not name the commit $commit"; exit 1; }
 
