@@ -179,7 +179,7 @@ def _stopped(ranks, draw, folder, number):
 
 def _file_size(ranks, draw, folder, number):
     name, run = list(SCENES)[number % len(SCENES)], folder / "run"
-    limits = Limits(file_size=2048 * number + draw.randrange(2048))
+    limits = Limits(file_size=4096 * number + draw.randrange(4096))
     words = ranks.words(draw.choice((2, 3)), next_words(ranks, name, run))
     one_line(ranks.ended(ranks.start(words, limits), words), 0, 4)
     if list(run.glob("*.tmp")):
@@ -192,7 +192,7 @@ def _small_disk(shared, draw, folder, number):
     disk, copy = folder / "disk", folder / "copy"
     for made in (disk, copy):
         made.mkdir()
-    size = 16384 * (number + 2)
+    size = 32768 + 49152 * number
     run = mount + ["bash", "-c", MOUNTED.format(size=size), "bash", disk,
                      *ranks.words(draw.choice((2, 3)), ranks.scenes.words(RICH, disk / "run", "-q"))]
     process = ranks.start(run, env={"KEELER_DISK": str(disk), "KEELER_COPY": str(copy)})
@@ -288,16 +288,16 @@ def faults(program):
     return [
         Fault("rank-kill", "ranks: one of 2 to 4 killed (SIGKILL) at a random moment", f"{len(SCENES)} scenes, three times each "
               "run; each life on another number of ranks, the last on 1 to 3", 12, 1, _killed, prepared()),
-        Fault("rank-signals", "ranks: USR1, then INT, TERM or HUP to mpirun at random moments", "the same scenes", 16, 1,
+        Fault("rank-signals", "ranks: USR1, then INT, TERM or HUP to mpirun at random moments", "the same scenes", 8, 1,
               _signalled, prepared()),
         Fault("rank-stopped", "ranks: one of 2 or 3 stands still (SIGSTOP)", "half of them go on after a second, and so does the "
-              "run; in the others mpirun is told to end", 16, 2, _stopped, prepared()),
-        Fault("rank-file-size", "ranks: limits on the size of files", "the same scenes, 0 to 64 KB in steps of 2 KB", 32, 2,
+              "run; in the others mpirun is told to end", 8, 2, _stopped, prepared()),
+        Fault("rank-file-size", "ranks: limits on the size of files", "the same scenes, 0 to 64 KB in steps of 4 KB", 16, 2,
               _file_size, prepared()),
-        Fault("rank-small-disk", "ranks: small disks that fill up", "a run with every kind of file on file systems of 32 to 600 KB",
-              36, 1, _small_disk, prepared(lambda ranks, folder: (ranks, mounter()))),
-        Fault("rank-scenes", "ranks: one is asked for another scene, folder or command", "refused by all, nothing is written", 40, 3,
+        Fault("rank-small-disk", "ranks: small disks that fill up", "a run with every kind of file on file systems of 32 to 560 KB",
+              12, 1, _small_disk, prepared(lambda ranks, folder: (ranks, mounter()))),
+        Fault("rank-scenes", "ranks: one is asked for another scene, folder or command", "refused by all, nothing is written", 20, 3,
               _other_scenes, prepared()),
         Fault("rank-host", "ranks: a host vanishes", "two hosts (network namespaces) over TCP: the second loses its power, its "
-              "daemon or its cable, or stands still for two seconds and goes on, at random moments", 24, 2, _lost_host, prepared(_two_hosts)),
+              "daemon or its cable, or stands still for two seconds and goes on, at random moments", 12, 2, _lost_host, prepared(_two_hosts)),
     ]
