@@ -106,7 +106,8 @@ bool draw_figure(const Grid& grid, const Plan& plan, const std::vector<batch::Po
   if (curves.empty())
     return false;
   plot::PlotAxis x{.label = label_of_key(grid.plot.x), .log = grid.plot.x_log};
-  const plot::PlotAxis y{.label = grid.plot.y, .log = grid.plot.y_log};
+  const batch::RunColumn& drawn = grid.quantities.columns()[grid.quantities.find(grid.plot.y).value()];
+  const plot::PlotAxis y{.label = drawn.name, .log = grid.plot.y_log};
   if (!x_is_number(grid, plan)) {
     x.log = false;
     x.words = words_along_x(grid);
