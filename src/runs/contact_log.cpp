@@ -8,7 +8,6 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
-#include <unordered_map>
 
 namespace keeler::runs {
 namespace {
@@ -98,36 +97,49 @@ void ContactLog::recorded(std::span<const collision::CollisionRecord> records) {
   }
 }
 
-void ContactLog::add_contacts_at_rest() {
+MembersAtRest members_at_rest(const Scene& scene, Simulation& simulation) {
+  const simulation::SimulationState& state = simulation.state();
+  MembersAtRest members;
+  if (!scene.output.collisions->at_rest || state.resting.pairs.empty())
+    return members;
+  const std::int64_t interval = state.control.kick > 0 ? state.control.kick : scene.gravity->kick_every;
+  if (state.step % interval != 0)
+    return members;
+  for (const contact_solver::RestingPair& pair : state.resting.pairs)
+    members.ids.insert(members.ids.end(), {pair.low, pair.high});
+  std::sort(members.ids.begin(), members.ids.end());
+  members.ids.erase(std::unique(members.ids.begin(), members.ids.end()), members.ids.end());
+  members.bodies = simulation.bodies_of(members.ids);
+  return members;
+}
+
+void ContactLog::add_contacts_at_rest(const MembersAtRest& members) {
   assert(simulation_ != nullptr && scene_.output.collisions);
+  if (members.ids.empty())
+    return;
   const scene::ContactLogSettings& settings = *scene_.output.collisions;
   const simulation::SimulationState& state = simulation_->state();
   const contact_solver::RestingState& resting = state.resting;
-  if (!settings.at_rest || resting.pairs.empty())
-    return;
-  const std::int64_t interval = state.control.kick > 0 ? state.control.kick : scene_.gravity->kick_every;
-  if (state.step % interval != 0)
-    return;
-  const Particles& particles = state.particles;
-  std::unordered_map<std::uint64_t, std::size_t> index; // of each id
-  for (std::size_t k = 0; k < particles.size(); ++k)
-    index[particles.ids[k]] = k;
+  const auto body_of = [&](std::uint64_t id) -> const Body& {
+    const auto found = std::lower_bound(members.ids.begin(), members.ids.end(), id);
+    return members.bodies[static_cast<std::size_t>(found - members.ids.begin())];
+  };
   const forces::Boundary boundary = simulation_->boundary();
-  const auto position = [&](std::size_t k) {
-    return state_at(particles.bodies[k].elements, boundary.frequencies, boundary.rotation()).position;
+  const auto position = [&](const Body& body) {
+    return state_at(body.elements, boundary.frequencies, boundary.rotation()).position;
   };
   const double omega = scene_.planet.orbital_frequency, time = static_cast<double>(state.step) * scene_.time.step;
   for (std::size_t k = 0; k < resting.pairs.size(); ++k) {
     const auto [low, high] = resting.pairs[k];
-    const std::size_t i = index[low], j = index[high];
-    const double radius = particles.bodies[i].radius;
+    const Body &body = body_of(low), &other = body_of(high);
+    const double radius = body.radius;
     collision::CollisionRecord record{};
     record.low_id = low, record.high_id = high;
-    record.radius_sum = radius + particles.bodies[j].radius;
+    record.radius_sum = radius + other.radius;
     if (!is_logged(settings, record, time, omega))
       continue;
-    const Vec3 separation = resting.loads[k].separation, normal = separation.normalized(), at = position(i);
-    const Vec3 shift = separation - (position(j) - at);
+    const Vec3 separation = resting.loads[k].separation, normal = separation.normalized(), at = position(body);
+    const Vec3 shift = separation - (position(other) - at);
     record.image.nx = static_cast<std::int32_t>(std::lround(shift.x() / boundary.box.size_x));
     record.image.ny =
         static_cast<std::int32_t>(std::lround((shift.y() + record.image.nx * boundary.offset) / boundary.box.size_y));

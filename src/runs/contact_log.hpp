@@ -34,6 +34,15 @@ struct LogResume {
 bool is_logged(const scene::ContactLogSettings& settings, const collision::CollisionRecord& record, double time_orbits,
                double orbital_frequency);
 
+/// The particles of the contacts at rest that are to be logged at this boundary: none where the scene does not ask for
+/// them, and between kicks.
+struct MembersAtRest {
+  std::vector<std::uint64_t> ids; ///< in increasing order
+  std::vector<Body> bodies;       ///< of each
+};
+/// Collective. Precondition: the scene has a log of contacts.
+MembersAtRest members_at_rest(const Scene& scene, Simulation& simulation);
+
 class ContactLog final : public collision::DriftObserver {
 public:
   static constexpr std::int64_t rows_per_file = std::int64_t{1} << 19;
@@ -45,9 +54,8 @@ public:
   /// Registers this log for the contacts of all following steps. The log must outlive them.
   void watch(Simulation& simulation);
 
-  /// Adds the contacts at rest that carry the kick at this boundary, where the scene asks for them. Call it after each
-  /// step.
-  void add_contacts_at_rest();
+  /// Adds the contacts at rest that carry the kick at this boundary. Call it after each step.
+  void add_contacts_at_rest(const MembersAtRest& members);
   /// Writes the files that are full. Call it after each step.
   void write_full_files();
   /// Writes all rows so far. Call it before a checkpoint.

@@ -150,12 +150,13 @@ void Recorder::watch(Simulation& simulation) {
     simulation.drift().observe(&record_requester_);
 }
 
-void Recorder::contacts() {
+void Recorder::contacts(Simulation& simulation) {
   if (!scene_.output.collisions)
     return;
   const Stopwatch watch(costs_.contacts);
+  const MembersAtRest members = members_at_rest(scene_, simulation);
   ranks_.on_root([&] {
-    contact_log_->add_contacts_at_rest();
+    contact_log_->add_contacts_at_rest(members);
     contact_log_->write_full_files();
   });
 }

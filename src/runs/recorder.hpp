@@ -65,7 +65,7 @@ public:
   }
 
   /// Writes the full files of the log of contacts. Call it after each step.
-  void contacts();
+  void contacts(Simulation& simulation);
   /// Reports rows that were missing in the files of a resumed run.
   void report_losses();
 

@@ -85,7 +85,7 @@ void Runner::report_passage() {
 void Runner::record() {
   const std::int64_t step = simulation_.state().step;
   report_passage();
-  recorder_.contacts();
+  recorder_.contacts(simulation_);
   if (due(scene_.output.series_every))
     recorder_.sample(simulation_);
   const bool asked = between_kicks() && ranks().broadcast(requests_.snapshot.exchange(false));

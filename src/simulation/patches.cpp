@@ -6,6 +6,7 @@
 #include <keeler/particles/by_id.hpp>
 #include <keeler/particles/order.hpp>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -21,6 +22,23 @@ Patch Simulation::patch_of(const Particles& particles, double offset, double aft
 
 Patch Simulation::patch_of(const Particles& particles) const {
   return patch_of(particles, state_.boundary_offset(), -0.5 * state_.step_length);
+}
+
+std::vector<Body> Simulation::bodies_of(std::span<const std::uint64_t> ids) {
+  struct Row {
+    Body body;
+    std::uint64_t id;
+  };
+  std::vector<Row> rows;
+  for (const std::uint32_t k : own_among(ids, state_.particles.size()))
+    rows.push_back({state_.particles.bodies[k], state_.particles.ids[k]});
+  rows = ranks_.gather_on_all(std::span<const Row>(rows));
+  std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.id < b.id; });
+  assert(rows.size() == ids.size());
+  std::vector<Body> bodies;
+  for (const Row& row : rows)
+    bodies.push_back(row.body);
+  return bodies;
 }
 
 Patch Simulation::patch() const {

@@ -253,6 +253,7 @@ void Simulation::sort_when_due() {
   if (!at_rest_.empty())
     cells::reorder(at_rest_, order);
   resting_->reordered();
+  own_by_id_.clear();
   find_moonlets();
 }
 

@@ -83,6 +83,7 @@ public:
   void put_back(SimulationState state) noexcept {
     state_ = std::move(state);
     drifting_ = undisturbed_ = false;
+    own_by_id_.clear();
   }
 
   const SimulationState& state() const { return state_; } ///< at this boundary
@@ -98,6 +99,10 @@ public:
   std::uint64_t first_moonlet() const { return count_ - state_.moonlets.size(); }
   /// Returns the body of a moonlet. Collective. Precondition: k < state().moonlets.size().
   Body moonlet(std::size_t k) const;
+
+  /// Returns on all ranks the bodies of particles by id. Collective: all ranks give the same ids. Precondition: the ids
+  /// increase, and there are such particles.
+  std::vector<Body> bodies_of(std::span<const std::uint64_t> ids);
 
   /// Returns a Cartesian copy of the state. Precondition: not distributed.
   Patch patch() const;
@@ -207,11 +212,11 @@ private:
   std::vector<std::unique_ptr<forces::Force>> forces_; // in the order of state_.forces
   std::unique_ptr<contact_solver::RestingContacts> resting_;
   std::vector<std::uint8_t> at_rest_; // by particle: does it rest on another one in this kick interval? Empty: none
-  std::vector<std::uint64_t> ids_at_rest_;      // on several ranks: the ids of such particles of all ranks, ascending
-  std::vector<std::uint32_t> own_by_id_;        // on several ranks: own particles in the order of ids; empty: not known
+  std::vector<std::uint64_t> ids_at_rest_;        // on several ranks: the ids of such particles of all ranks, ascending
+  std::vector<std::uint32_t> own_by_id_;          // own particles in the order of ids; empty: not known
   std::unique_ptr<decomposition::Blocks> blocks_; // null unless distributed
-  std::vector<std::size_t> moonlet_indices_;    // in the store; `elsewhere` on another rank
-  std::vector<double> moonlet_wraps_;           // shift in x and y of each by this wrap, m
+  std::vector<std::size_t> moonlet_indices_;      // in the store; `elsewhere` on another rank
+  std::vector<double> moonlet_wraps_;             // shift in x and y of each by this wrap, m
   TimeSplit split_;
 };
 

@@ -123,7 +123,8 @@ TEST_CASE("an overlap beyond rounding is told, with its pair and its depth") {
   patch.positions[30] = patch.positions[7] + Vec3(0.0, 0.0, distance);
   patch.positions[7].z() += 500.0;
   patch.positions[30].z() += 500.0;
-  CHECK(fault_of_overlap(cells::largest_overlap(patch)) == "particles 7 and 30 overlap by 1e-6 of their radius sum (1e-08 is allowed)");
+  CHECK(fault_of_overlap(cells::largest_overlap(patch)) ==
+        "particles 7 and 30 overlap by 1e-6 of their radius sum (1e-08 is allowed)");
 }
 
 TEST_CASE("a velocity that one particle alone has got is told by the sums and by the energy") {

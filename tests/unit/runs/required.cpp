@@ -124,7 +124,7 @@ double held_by_recorder(const std::filesystem::path& folder, const Scene& scene)
   recorder->watch(simulation);
   for (int k = 0; k < 3; ++k) {
     simulation.advance();
-    recorder->contacts();
+    recorder->contacts(simulation);
   }
   CHECK((recorder->costs().stresses > 0.0) == measures_gravity(scene));
   CHECK((recorder->costs().contacts > 0.0) == scene.output.collisions.has_value());
