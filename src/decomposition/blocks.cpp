@@ -154,8 +154,8 @@ bool Blocks::choose_strips() {
 
 void Blocks::rebuild(Holding holding, const Epoch& epoch) {
   Particles& particles = holding.particles;
-  adapt_growth();
-  ++rebuilds_;
+  if (rebuilds_++ > 0)
+    adapt_growth();
   ghosts_.epoch = epoch;
   ghosts_.built_at = epoch.time;
   const std::vector<Point> at = positions(particles, epoch.offset);

@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -81,6 +82,8 @@ void count(const Communicator& ranks, int argc, char** argv) {
   const collision::DriftCosts costs_after = simulation.drift().costs();
   table.add("pairs of lines tested per step", each(costs_after.pairs_tested - costs.pairs_tested));
   table.add("repeated steps", static_cast<double>(costs_after.repeated_steps - costs.repeated_steps));
+  const auto& hits = blocks.ghosts().contacts;
+  table.add("contacts of own particles, last layer", static_cast<double>(std::accumulate(hits.begin(), hits.end(), 0)));
   table.add("rebuilt layers", static_cast<double>(blocks.rebuilds() - rebuilds));
   table.add("particles sent to new owners per step", each(blocks.migrants() - migrants));
 }
