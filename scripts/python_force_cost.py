@@ -38,7 +38,7 @@ def steps(folder, gravity, kind, count):
     keeler.set_threads(1)
     if kind in ("python", "compiled"):
         function = drag if kind == "python" else ctypes.CDLL(f"{folder}/drag.so").drag
-        keeler.add_force("own", function, {"rate": keeler.Key(1e-4, "1/s")})
+        keeler.add_force("own", function, {"rate": keeler.Key(1e-4, "1/s")}, reads=["velocities_beyond_shear"])
     tables = {"none": {}, "[gas]": {"gas": {"stopping_time": 0.2}}}.get(kind, {"own": {}})
     if gravity != "no":
         tables["gravity"] = {"solver": gravity, "kick_every": 1}

@@ -236,7 +236,8 @@ RunNumbers RunQuantities::measure(const fs::path& folder, const Scene& scene, st
   run.last = std::move(runs::load_newest_patch(folder).patches.front());
   numbers.particle_count = run.last.size();
   const runs::TransportReport report = runs::TransportReport::of_series(
-      run.series, runs::RingScale::of(run.last, !scene.external_forces.empty()), {since, std::nullopt});
+      run.series, runs::RingScale::of(run.last, !scene.external_forces.empty(), scene.gravity.has_value()),
+      {since, std::nullopt});
   if (!report.transport())
     return numbers;
   const double first = report.transport()->since_orbit, until = report.transport()->until_orbit;

@@ -77,7 +77,8 @@ void LiveView::Shared::make_frames(const Simulation& simulation, const Scene& sc
     scale_ = runs::RingScale{.mass = 0.0,
                              .orbital_frequency = scene.planet.orbital_frequency,
                              .shear = simulation.state().box.shear,
-                             .driven = !scene.external_forces.empty()};
+                             .driven = !scene.external_forces.empty(),
+                             .attracts = scene.gravity.has_value()};
     for (const Body& body : simulation.state().particles.bodies)
       scale_->mass += body.mass;
   }

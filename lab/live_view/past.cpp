@@ -50,10 +50,10 @@ const Patch& Past::patch(const std::string& name) {
   initial_conditions::require_possible(snapshot.patch, file_of(name).string());
   if (snapshot.patch.size() == 0)
     throw IoError("'" + file_of(name).string() + "' holds no particle");
-  if (!scale_)
-    scale_ = runs::RingScale::of(
-        snapshot.patch,
-        !scene::parse_stored_scene(snapshot.meta.scene, file_of(name).string()).external_forces.empty());
+  if (!scale_) {
+    const Scene scene = scene::parse_stored_scene(snapshot.meta.scene, file_of(name).string());
+    scale_ = runs::RingScale::of(snapshot.patch, !scene.external_forces.empty(), scene.gravity.has_value());
+  }
   patch_ = std::move(snapshot.patch);
   read_ = name;
   return patch_;

@@ -29,7 +29,8 @@ void SeriesFeed::sample(const Simulation& simulation, const Scene& scene) {
     scale_ = runs::RingScale{.mass = now.means.mass,
                              .orbital_frequency = scene.planet.orbital_frequency,
                              .shear = simulation.state().box.shear,
-                             .driven = !scene.external_forces.empty()};
+                             .driven = !scene.external_forces.empty(),
+                             .attracts = scene.gravity.has_value()};
   });
 }
 

@@ -235,7 +235,8 @@ std::string RunPage::plots(const runs::TransportReport& report) const {
       " Curves are means over consecutive rows, bands their standard errors where a mean is over several "
       "rows. Drag along an axis to zoom, double-click to see all. In the last plot any quantity may be on either axis: "
       "the curves, and the numbers of keeler analyze of single snapshots.";
-  const runs::RingScale scale = runs::RingScale::of(pictured_.back(), !scene_->external_forces.empty());
+  const runs::RingScale scale =
+      runs::RingScale::of(pictured_.back(), !scene_->external_forces.empty(), scene_->gravity.has_value());
   const DrawnUnits units{units_.value_or(quantities::UnitSystem::si), runs::units_of(pictured_.back())};
   return section("series", "Through time", note(words) + "<div id=\"plots\"></div>\n") +
          data_element("series-data",

@@ -66,7 +66,7 @@ plot::Figure run_series_figure(const std::filesystem::path& folder, bool light) 
     throw UsageError(fmt::format("no plots of '{}': its series has fewer than two rows; let it run longer, or give "
                                  "output.series_every a smaller value",
                                  folder.string()));
-  const runs::RingScale scale = runs::RingScale::of(newest.patches.back(), newest.driven);
+  const runs::RingScale scale = runs::RingScale::of(newest.patches.back(), newest.driven, newest.gravity.has_value());
   const runs::TransportReport report = runs::TransportReport::of_run(folder, scale, {});
   return series_figure(series_plots(run.series, scale, steady_part(report)),
                        newest.title.empty() ? "Ring patch" : newest.title, light);

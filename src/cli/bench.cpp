@@ -9,6 +9,7 @@ void add_bench(CLI::App& program, Action& action, const Communicator& ranks) {
   add_bench_drift(command, action);
   add_bench_gravity(command, action);
   add_bench_step(command, action, ranks);
+  add_bench_light(command, action);
 }
 
 } // namespace keeler::cli

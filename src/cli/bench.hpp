@@ -11,6 +11,7 @@ namespace keeler::cli {
 
 void add_bench_drift(CLI::App& bench, Action& action);
 void add_bench_gravity(CLI::App& bench, Action& action);
+void add_bench_light(CLI::App& bench, Action& action);
 void add_bench_step(CLI::App& bench, Action& action, const Communicator& ranks);
 
 /// --threads N of a bench; one thread by default.

@@ -1,4 +1,4 @@
-// The table of the numbers of keeler bench drift and step.
+// The table of the numbers of keeler bench drift, step and light.
 #pragma once
 
 #include <keeler/bench/drift.hpp>
@@ -23,5 +23,6 @@ quantities::Record record_of(const TimedDrift& drift);
 
 std::vector<quantities::Quantity> step_bench_quantities();
 std::vector<quantities::Quantity> drift_bench_quantities();
+std::vector<quantities::Quantity> light_bench_quantities(); // bench_light.cpp
 
 } // namespace keeler::cli

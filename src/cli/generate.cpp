@@ -108,7 +108,8 @@ void remove_overlaps(Patch& patch, const GenerateOptions& options, const io::Par
                                         pluralize(overlaps, "pair"), table.location_of(worst.id_i),
                                         table.location_of(worst.id_j), worst.depth);
   if (!options.relax)
-    throw InvariantError(found + "; correct them, or move them apart with --relax");
+    throw InvariantError(found + initial_conditions::overlap_hint(patch) +
+                         "; correct them, or move them apart with --relax");
   const initial_conditions::Relaxation moved =
       unless_stopped(stopped, [&] { return initial_conditions::relax(patch); });
   print("{}; moved {} apart, by {} m at most\n", found, pluralize(moved.moved, "particle"),

@@ -107,6 +107,14 @@ std::vector<light::Sight> sights_of_file(const std::string& file) {
 
 } // namespace
 
+std::string patches_in_words(std::span<const Patch> patches) {
+  const std::string count = pluralize(patches.size(), "snapshot");
+  const std::string first = format_number(patches.front().time_orbits, 4),
+                    last = format_number(patches.back().time_orbits, 4);
+  return first == last ? fmt::format("{} of orbit {}", count, first)
+                       : fmt::format("{} of the orbits {} to {}", count, first, last);
+}
+
 void LawOptions::add_to(CLI::App& command, CLI::Option* needs) {
   std::string words;
   for (const light::LawEntry& entry : light::law_entries())

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,5 +43,8 @@ struct SightGrid {
   /// line of the file if there is one.
   std::vector<light::Sight> sights() const;
 };
+
+/// Returns what is looked at: "3 snapshots of the orbits 2 to 3".
+std::string patches_in_words(std::span<const Patch> patches);
 
 } // namespace keeler::cli

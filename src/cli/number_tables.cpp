@@ -14,7 +14,8 @@ std::vector<NumberTable> further_number_tables() {
           {"keeler occultation: the model of wakes", light::wake_model_quantities()},
           {"keeler check", check_quantities()},
           {"keeler bench step", step_bench_quantities()},
-          {"keeler bench drift", drift_bench_quantities()}};
+          {"keeler bench drift", drift_bench_quantities()},
+          {"keeler bench light", light_bench_quantities()}};
 }
 
 } // namespace keeler::cli

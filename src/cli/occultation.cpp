@@ -2,6 +2,8 @@
 // it.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "light_options.hpp"
+#include "messages.hpp"
 #include "observed_stars.hpp"
 #include "print.hpp"
 #include "progress_line.hpp"
@@ -22,6 +24,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -64,21 +68,28 @@ struct Fits {
   std::optional<light::FittedWakes> simulated, observed;
 };
 
-Fits fits_of(std::span<const light::FootprintStatistics> found, const std::optional<ObservedStars>& observed,
+Fits fits_of(std::span<const light::FootprintStatistics> found, const ObservedStars* observed,
              light::BarSection section) {
-  std::vector<light::StarTransmission> simulated;
-  for (const light::FootprintStatistics& one : found)
-    simulated.push_back({one.star, one.transmission.value, std::max(one.transmission.error, 1e-6)});
   Fits fits;
-  fits.simulated = fit_wakes(simulated, section);
+  fits.simulated = fit_wakes(found, section);
   if (observed)
     fits.observed = fit_wakes(observed->transmissions, section);
   return fits;
 }
 
+// What was looked at.
+struct Traced {
+  std::size_t snapshots = 0, asked = 0; // lines of sight that were asked for
+  double since = 0.0, until = 0.0;      // orbits of the first and the last snapshot
+};
+
 nlohmann::ordered_json json_of(const OccultationOptions& options, std::span<const light::FootprintStatistics> found,
-                               const std::optional<ObservedStars>& observed, const Fits& fits) {
+                               const ObservedStars* observed, const Fits& fits, const Traced& traced) {
   nlohmann::ordered_json json;
+  json["snapshots"] = traced.snapshots;
+  json["since_orbit"] = traced.since;
+  json["until_orbit"] = traced.until;
+  json["stopped"] = found.size() < traced.asked;
   json["footprint_m"] = {options.track.length, options.track.width};
   json["track_azimuth_degrees"] = options.track_azimuth;
   json["samples"] = options.track.samples;
@@ -112,18 +123,18 @@ void print_fit(const char* of, const std::optional<light::FittedWakes>& fit) {
 }
 
 void print_occultation(const OccultationOptions& options, std::span<const light::FootprintStatistics> found,
-                       const std::optional<ObservedStars>& observed, const Fits& fits) {
+                       const ObservedStars* observed, const Fits& fits) {
   cli::print("samples of {} x {} m, along the azimuth {}\n", format_number(options.track.length, 4),
              format_number(options.track.width, 4), format_number(options.track_azimuth, 4));
   for (std::size_t k = 0; k < found.size(); ++k) {
     const light::FootprintStatistics& one = found[k];
     const auto maybe = [](const std::optional<double>& value) { return value ? format_number(*value, 4) : "unknown"; };
-    cli::print("  B {:<5} phi {:<5} T {:.4f} +- {:<7.2g} tau {:<8} variance {:<9.3g} +- {:<7.2g} skewness {:<6.3f} "
+    const std::string skewness = one.skewness ? format_number(one.skewness->value, 4) : "unknown";
+    cli::print("  B {:<5} phi {:<5} T {:.4f} +- {:<7.2g} tau {:<8} variance {:<9.3g} +- {:<7.2g} skewness {:<7} "
                "radius {} m{}\n",
                format_number(one.star.elevation / rad_per_degree, 4),
                format_number(one.star.azimuth / rad_per_degree, 4), one.transmission.value, one.transmission.error,
-               maybe(one.optical_depth), one.variance.value, one.variance.error, one.skewness.value,
-               maybe(one.effective_radius),
+               maybe(one.optical_depth), one.variance.value, one.variance.error, skewness, maybe(one.effective_radius),
                observed ? fmt::format("; observed T {:.4f}", observed->transmissions[k].transmission) : "");
   }
   print_fit("here", fits.simulated);
@@ -131,8 +142,13 @@ void print_occultation(const OccultationOptions& options, std::span<const light:
     print_fit("observed", fits.observed);
 }
 
+bool is_overhead(const light::Bearing& star) {
+  return std::fabs(std::cos(star.elevation)) < 1e-9;
+}
+
 ExitCode run(OccultationOptions options) {
   options.threads.apply();
+  options.talk.say_program();
   light::require_tracer();
   std::optional<fs::path> table;
   if (options.csv) {
@@ -143,21 +159,37 @@ ExitCode run(OccultationOptions options) {
       files::require_writable_folder(files::folder_of(*table), *table);
   }
   options.track.azimuth = options.track_azimuth * rad_per_degree;
-  const std::optional<ObservedStars> observed =
-      options.observations.empty() ? std::nullopt : std::optional(read_observed_stars(options.observations));
+  std::optional<ObservedStars> table_of_stars;
+  const ObservedStars* observed = nullptr;
+  if (!options.observations.empty())
+    observed = &table_of_stars.emplace(read_observed_stars(options.observations));
   std::vector<light::Bearing> stars;
   if (observed)
     for (const light::StarTransmission& one : observed->transmissions)
       stars.push_back(one.star);
   else
     stars = stars_of_grid(options);
-  const runs::StoredPatches stored = runs::measured_part(options.path, options.window).stored;
+  if (std::count_if(stars.begin(), stars.end(), is_overhead) > 1)
+    options.talk.notice()(
+        "at an elevation of 90 degrees an azimuth has no meaning: lines of sight that differ in it alone "
+        "are the same");
   std::vector<light::FootprintStatistics> found;
+  Traced traced{.asked = stars.size()};
   {
+    const Interruptible by_signals(requests_from_signals().stop);
+    const runs::StoredPatches stored = runs::measured_part(options.path, options.window).stored;
+    traced.snapshots = stored.patches.size();
+    traced.since = stored.patches.front().time_orbits, traced.until = stored.patches.back().time_orbits;
+    if (options.talk.verbose)
+      say(fmt::format("{} at {}: {} samples of {} rays each", patches_in_words(stored.patches),
+                      pluralize(stars.size(), "line") + " of sight",
+                      options.track.tracks * options.track.samples * stored.patches.size(), options.track.rays));
     ProgressLine line(options.talk);
     found = footprint_statistics(stored.patches, stars, options.track,
                                  [&line](const Progress& progress) { line.show_if_long(progress); });
   }
+  if (found.empty())
+    throw Error(ExitCode::run_time, "stopped before a line of sight was traced (on request); nothing is written");
   const Fits fits = fits_of(found, observed,
                             options.section == "ellipse" ? light::BarSection::ellipse : light::BarSection::rectangle);
   if (table) {
@@ -170,10 +202,14 @@ ExitCode run(OccultationOptions options) {
     write_table(*table, report::csv_with_gaps(rows));
   }
   if (options.json)
-    print("{}\n", json_text(json_of(options, found, observed, fits), 2));
+    print("{}\n", json_text(json_of(options, found, observed, fits, traced), 2));
   else if (!table || !is_standard_output(*table))
     print_occultation(options, found, observed, fits);
-  return ExitCode::done;
+  if (found.size() == stars.size())
+    return ExitCode::done;
+  options.talk.notice()(fmt::format("stopped (on request) with {} of {} of sight; these are given", found.size(),
+                                    pluralize(stars.size(), "line")));
+  return ExitCode::stopped;
 }
 
 } // namespace
@@ -234,10 +270,8 @@ void add_occultation(CLI::App& program, Action& action) {
                         "keeler occultation wakes --elevation 66.7 --azimuth 0 --length 12 --width 8 --json",
                         "keeler occultation wakes --observations uvis.csv --section ellipse --csv beside.csv"});
   command.callback([options, &action] {
-    action = [options] {
-      return unless_stopped("stopped before all lines of sight were traced (on request); nothing is written",
-                            [&] { return run(*options); });
-    };
+    requests_from_signals(); // before signals are released
+    action = [options] { return run(*options); };
   });
 }
 

@@ -2,6 +2,7 @@
 #include "command.hpp"
 #include "common_options.hpp"
 #include "light_options.hpp"
+#include "messages.hpp"
 #include "photometry_figure.hpp"
 #include "print.hpp"
 #include "progress_line.hpp"
@@ -45,13 +46,21 @@ struct PhotometryOptions {
   TalkOption talk;
 };
 
-nlohmann::ordered_json json_of(const PhotometryOptions& options, std::size_t snapshots,
-                               std::span<const light::Photometry> found, std::size_t asked) {
+// What was looked at.
+struct Measured {
+  std::size_t snapshots = 0, asked = 0; // sights that were asked for
+  double since = 0.0, until = 0.0;      // orbits of the first and the last snapshot
+};
+
+nlohmann::ordered_json json_of(const PhotometryOptions& options, const Measured& measured,
+                               std::span<const light::Photometry> found) {
   nlohmann::ordered_json json;
   json["law"] = options.law.name;
   json["albedo"] = options.law.albedo;
-  json["snapshots"] = snapshots;
-  json["stopped"] = found.size() < asked;
+  json["snapshots"] = measured.snapshots;
+  json["since_orbit"] = measured.since;
+  json["until_orbit"] = measured.until;
+  json["stopped"] = found.size() < measured.asked;
   json["sights"] = nlohmann::ordered_json::array();
   for (const light::Photometry& one : found)
     json["sights"].push_back(quantities::json_of(record_of(one)));
@@ -96,6 +105,7 @@ std::optional<fs::path> table_file(const PhotometryOptions& options) {
 
 ExitCode run(PhotometryOptions options) {
   options.threads.apply();
+  options.talk.say_program();
   light::require_tracer();
   const std::optional<fs::path> table = table_file(options);
   const std::optional<PhotometryFigureFile> figure =
@@ -103,11 +113,18 @@ ExitCode run(PhotometryOptions options) {
   options.settings.law = options.law.law();
   const std::vector<light::Sight> sights = options.grid.sights();
   std::vector<light::Photometry> found;
-  std::size_t snapshots = 0;
+  Measured measured{.asked = sights.size()};
   {
     const Interruptible by_signals(requests_from_signals().stop);
     const runs::StoredPatches stored = runs::measured_part(options.path, options.window).stored;
-    snapshots = stored.patches.size();
+    measured.snapshots = stored.patches.size();
+    measured.since = stored.patches.front().time_orbits, measured.until = stored.patches.back().time_orbits;
+    if (options.talk.verbose)
+      say(fmt::format("{} at {}, law {}, albedo {}: {}", patches_in_words(stored.patches),
+                      pluralize(sights.size(), "sight"), options.law.name, format_number(options.law.albedo),
+                      options.settings.error
+                          ? fmt::format("rays until the error of I/F is {:g}", *options.settings.error)
+                          : pluralize(options.settings.rays, "ray") + " per sight and snapshot"));
     ProgressLine line(options.talk);
     found = light::photometry(stored.patches, sights, options.settings,
                               [&line](const Progress& progress) { line.show_if_long(progress); });
@@ -130,9 +147,9 @@ ExitCode run(PhotometryOptions options) {
   if (figure)
     figure->write(found);
   if (options.json)
-    print("{}\n", json_text(json_of(options, snapshots, found, sights.size()), 2));
+    print("{}\n", json_text(json_of(options, measured, found), 2));
   else if (!table || !is_standard_output(*table))
-    print_text(options, snapshots, found);
+    print_text(options, measured.snapshots, found);
   if (!cut_short)
     return ExitCode::done;
   options.talk.notice()(fmt::format("stopped (on request) with {} of {}; these are given", found.size(),
@@ -173,7 +190,10 @@ void add_photometry(CLI::App& program, Action& action) {
                         "keeler photometry wakes --elevation 20 --azimuth 0 --phase 0.5,2,6,40,90,140 --error 0.01",
                         "keeler photometry wakes --elevation -20 --sun-elevation 15 --phase 60 --json",
                         "keeler photometry wakes --observations hst.csv --law lambert --albedo 0.6 --csv found.csv"});
-  command.callback([options, &action] { action = [options] { return run(*options); }; });
+  command.callback([options, &action] {
+    requests_from_signals(); // before signals are released
+    action = [options] { return run(*options); };
+  });
 }
 
 } // namespace keeler::cli

@@ -13,6 +13,7 @@
 #include <keeler/files/files.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/live_view/live_view.hpp>
+#include <keeler/runs/run_folder.hpp>
 #include <keeler/runs/run_view.hpp>
 
 #include <fmt/format.h>
@@ -119,6 +120,12 @@ ExitCode show_files(const ViewArguments& arguments, const fs::path& path) {
 ExitCode show_run(const ViewArguments& arguments, const Scene& scene, const fs::path& folder, bool is_kept,
                   const std::vector<std::string>& words) {
   runs::RunRequests& asked = requests_from_signals();
+  if (!arguments.resume) { // before there is a page
+    const runs::RunFolder place(folder);
+    if (!arguments.force)
+      place.refuse_if_occupied();
+    place.require_writable();
+  }
   Viewing viewing(arguments, {.title = scene.title.empty() ? arguments.scene.path : scene.title,
                               .path = folder,
                               .stop = [&asked] { asked.stop = true; },

@@ -2,6 +2,8 @@
 
 #include <keeler/diagnostics/mean.hpp>
 
+#include <cmath>
+
 namespace keeler::diagnostics {
 
 PatchEnergy patch_energy(const Patch& patch) {
@@ -11,10 +13,14 @@ PatchEnergy patch_energy(const Patch& patch) {
       return part(elements_from({patch.positions[k], patch.velocities[k]}, f, Rotation()));
     });
   };
-  const double k2 = f.kappa * f.kappa;
+  const auto variance = [&](double Elements::*first, double Elements::*second) { // of a vector
+    const double x = mean_of([&](const Elements&el) { return el.*first; }),
+                 y = mean_of([&](const Elements&el) { return el.*second; });
+    return mean_of([&](const Elements& el) { return std::pow(el.*first - x, 2) + std::pow(el.*second - y, 2); });
+  };
   PatchEnergy mean;
-  mean.horizontal = mean_of([&](const Elements& el) { return 0.5 * k2 * el.eccentricity() * el.eccentricity(); });
-  mean.vertical = mean_of([&](const Elements& el) { return 0.5 * f.nu * f.nu * el.inclination() * el.inclination(); });
+  mean.horizontal = 0.5 * f.kappa * f.kappa * variance(&Elements::e_cos, &Elements::e_sin);
+  mean.vertical = 0.5 * f.nu * f.nu * variance(&Elements::i_sin, &Elements::i_cos);
   return mean;
 }
 

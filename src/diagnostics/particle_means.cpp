@@ -123,7 +123,8 @@ ParticleMeans particle_means(const Particles& particles, const Frequencies& freq
           variance.cwiseSqrt(),
           sums.product.value() / mass - mean.x() * mean.y(),
           std::sqrt(sums.heights.value() / mass),
-          spin_means(particles, after, ranks)};
+          spin_means(particles, after, ranks),
+          reference + mean};
 }
 
 } // namespace keeler::diagnostics

@@ -26,6 +26,7 @@ struct ParticleMeans {
   double random_stress = 0.0; ///< ⟨c_x c_y⟩ without the mean motion, m² rad⁻²: S × translational_viscosity()
   double scale_height = 0.0;  ///< scale_height(), m
   SpinMeans spin;
+  Vec3 motion = Vec3::Zero(); ///< ⟨c⟩, the mean motion beyond the shear, m rad⁻¹
 };
 
 /// Returns means at `after` (rad) from the epoch of the elements; all are 0 without particles. Collective: over the

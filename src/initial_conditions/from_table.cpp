@@ -88,8 +88,36 @@ Patch patch_from_table(const io::ParticleTable& table, const scene::TableScene& 
     if (!fault.empty())
       fail(table, k, fault);
   }
-  cells::require_no_heap(patch, table.file);
+  try {
+    cells::require_no_heap(patch, table.file);
+  } catch (const InvariantError& error) {
+    throw InvariantError(error.what() + overlap_hint(patch));
+  }
   return patch;
+}
+
+std::string overlap_hint(const Patch& patch) {
+  constexpr double tiny = 0.02; // of the box: 30 m in km are 0.001 of it
+  Vec3 low = patch.positions.front(), high = low;
+  for (const Vec3& position : patch.positions)
+    low = low.cwiseMin(position), high = high.cwiseMax(position);
+  const Vec3 span = high - low;
+  if (patch.size() > 1 && span.x() < tiny * patch.box.size_x && span.y() < tiny * patch.box.size_y)
+    return fmt::format("; all are within {:.2g} m x {:.2g} m of a box of {:.5g} m x {:.5g} m: lengths are in m, are "
+                       "these in km?",
+                       span.x(), span.y(), patch.box.size_x, patch.box.size_y);
+  if (cells::count_overlaps(patch, cells::allowed_overlap) > 50 * patch.size())
+    return {}; // a heap: the largest overlap would take long to find
+  const cells::Overlap worst = cells::largest_overlap(patch);
+  const auto index = [&](std::uint64_t id) {
+    return static_cast<std::size_t>(std::find(patch.ids.begin(), patch.ids.end(), id) - patch.ids.begin());
+  };
+  const std::size_t i = index(worst.id_i), j = index(worst.id_j);
+  if ((patch.positions[i] - patch.positions[j]).norm() > patch.radii[i] + patch.radii[j])
+    return fmt::format("; that pair meets across an edge of the box: is the shear offset right ({:g} m here; a CSV has "
+                       "none, the other formats of keeler convert keep it), and is the box that of the particles?",
+                       patch.offset);
+  return {};
 }
 
 Relaxation relax(Patch& patch) {

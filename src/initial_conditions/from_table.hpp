@@ -7,6 +7,7 @@
 #include <keeler/scene/scene.hpp>
 
 #include <cstddef>
+#include <string>
 
 namespace keeler::initial_conditions {
 
@@ -16,6 +17,10 @@ namespace keeler::initial_conditions {
 /// epicycle explains, or without a mass, for spins if the scene has no friction, and for a table that states another
 /// box or Omega; InvariantError for heaps of overlapping particles.
 Patch patch_from_table(const io::ParticleTable& table, const scene::TableScene& scene);
+
+/// Returns what may be wrong with a table whose particles overlap, for messages: "; all are within …, are these in
+/// km?", or "; that pair meets across an edge of the box: …" of the largest overlap; empty if neither shows.
+std::string overlap_hint(const Patch& patch);
 
 /// Result of relax().
 struct Relaxation {

@@ -54,6 +54,10 @@ void require_format(const hdf5::Handle& code) {
 
 // Throws IoError when groups are missing: files of GADGET have arrays of particles but no description of a ring.
 void require_groups(const hdf5::Handle& image) {
+  if (hdf5::has_attribute(image, "format") && hdf5::read_text_attribute(image, "format") == checkpoint_format)
+    throw IoError(
+        "it is not a Keeler snapshot but a checkpoint, of which \"keeler info\" and \"keeler convert\" tell; name "
+        "a snapshot, snap_NNNNNN.hdf, or the folder of its run");
   const std::vector<std::string> names = hdf5::names_in(image);
   std::vector<std::string> missing;
   for (const char* group : {"Code", "RingBox", "Parameters", particles_group})

@@ -2,6 +2,7 @@
 
 #include "tracer.hpp"
 
+#include <keeler/core/interrupt.hpp>
 #include <keeler/core/parallel.hpp>
 #include <keeler/core/phase_progress.hpp>
 #include <keeler/core/random.hpp>
@@ -100,7 +101,7 @@ FootprintStatistics statistics_of(const std::vector<std::uint32_t>& passed, cons
   const double variance = result.variance.value, sine = std::fabs(std::sin(star.elevation));
   if (variance > 0.0) {
     const double scale = std::pow(variance, -1.5);
-    result.skewness = {third.value * scale, third.error * scale};
+    result.skewness = Estimate{third.value * scale, third.error * scale};
     result.kurtosis = fourth.value / (variance * variance) - 3.0;
   }
   if (m > 0.0)
@@ -129,10 +130,15 @@ std::vector<FootprintStatistics> footprint_statistics(std::span<const Patch> pat
   for (const Bearing& star : stars) {
     assert(std::sin(star.elevation) != 0.0);
     std::vector<std::uint32_t> passed;
-    for (std::size_t k = 0; k < tracers.size(); ++k) {
-      const std::vector<std::uint32_t> one = passed_rays(tracers[k], star, track, static_cast<std::uint64_t>(k) << 40);
-      passed.insert(passed.end(), one.begin(), one.end());
-      progress.add(1.0);
+    try {
+      for (std::size_t k = 0; k < tracers.size(); ++k) {
+        const std::vector<std::uint32_t> one =
+            passed_rays(tracers[k], star, track, static_cast<std::uint64_t>(k) << 40);
+        passed.insert(passed.end(), one.begin(), one.end());
+        progress.add(1.0);
+      }
+    } catch (const Interrupted&) {
+      break;
     }
     results.push_back(statistics_of(passed, star, track));
   }

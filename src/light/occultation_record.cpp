@@ -2,6 +2,7 @@
 
 #include <keeler/core/units.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace keeler::light {
@@ -11,6 +12,7 @@ namespace unit = quantities::unit;
 using quantities::Spread, quantities::Value, quantities::value_of;
 
 constexpr double degrees_per_rad = 180.0 / pi;
+constexpr char no_variance[] = "the variance is not above 0";
 
 std::vector<quantities::QuantityRow<FootprintStatistics>> star_rows() {
   using Of = const FootprintStatistics&;
@@ -29,12 +31,12 @@ std::vector<quantities::QuantityRow<FootprintStatistics>> star_rows() {
         Spread::error},
        [](Of s) -> Value { return value_of(std::optional(s.variance)); }},
       {{"skewness", unit::none, "skewness", "third central moment of T over variance^(3/2)", Spread::error},
-       [](Of s) -> Value { return value_of(std::optional(s.skewness)); }},
+       [](Of s) -> Value { return s.skewness ? value_of(s.skewness) : quantities::Unknown{no_variance}; }},
       {{"kurtosis", unit::none, "kurtosis", "fourth central moment of T over variance squared, less 3"},
-       [](Of s) -> Value { return s.kurtosis; }},
+       [](Of s) -> Value { return value_of(s.kurtosis, no_variance); }},
       {{"effective_radius", unit::metres, "radius",
         "of equal spheres at random with this T and variance (Showalter & Nicholson 1990; Colwell et al. 2018)"},
-       [](Of s) -> Value { return value_of(s.effective_radius, "there is no variance"); }},
+       [](Of s) -> Value { return value_of(s.effective_radius, no_variance); }},
   };
 }
 
@@ -69,6 +71,14 @@ quantities::Record record_of(const FootprintStatistics& statistics) {
 
 quantities::Record record_of(const FittedWakes& fit) {
   return {entries_of(fit_rows(), fit)};
+}
+
+std::optional<FittedWakes> fit_wakes(std::span<const FootprintStatistics> found, BarSection section) {
+  constexpr double min_error = 1e-6; // of a transmission: tracks that agree leave none
+  std::vector<StarTransmission> transmissions;
+  for (const FootprintStatistics& one : found)
+    transmissions.push_back({one.star, one.transmission.value, std::max(one.transmission.error, min_error)});
+  return fit_wakes(transmissions, section);
 }
 
 std::vector<quantities::Quantity> occultation_quantities() {

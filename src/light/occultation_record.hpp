@@ -10,6 +10,9 @@ namespace keeler::light {
 /// Returns the numbers of a line of sight but for the autocovariance; angles in degrees.
 quantities::Record record_of(const FootprintStatistics& statistics);
 
+/// Returns the model that fits the transmissions of all lines of sight; nothing where they leave it open.
+std::optional<FittedWakes> fit_wakes(std::span<const FootprintStatistics> found, BarSection section);
+
 /// Returns the numbers of a fit.
 quantities::Record record_of(const FittedWakes& fit);
 

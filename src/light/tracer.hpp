@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 
 namespace keeler::light {
 
@@ -31,6 +32,11 @@ public:
 
   /// True if there is any sphere on such a ray.
   bool blocked(const Vec3& origin, const Vec3& direction) const;
+
+  /// Counts the rays from these points that meet a sphere before they leave the cell, by Embree's queries as they are:
+  /// of single rays, or of packets of 16. A yardstick for the two above, which follow a ray across the faces of the
+  /// cell.
+  std::size_t count_blocked_in_cell(std::span<const Vec3> origins, const Vec3& direction, bool in_packets) const;
 
   /// Returns the beginning of a ray that leaves a sphere at a hit, outward: off its surface by the rounding of single
   /// precision.

@@ -141,4 +141,44 @@ bool Tracer::blocked(const Vec3& origin, const Vec3& direction) const {
   });
 }
 
+std::size_t Tracer::count_blocked_in_cell(std::span<const Vec3> origins, const Vec3& direction, bool in_packets) const {
+  constexpr std::size_t packet = 16;
+  constexpr float endless = std::numeric_limits<float>::infinity();
+  const RTCScene scene = scene_->scene.get();
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  std::size_t blocked = 0;
+  if (!in_packets) {
+    for (const Vec3& origin : origins) {
+      RTCRay ray;
+      set(ray, origin, direction, endless);
+      rtcOccluded1(scene, &context, &ray);
+      blocked += ray.tfar < 0.0f ? 1 : 0;
+    }
+    return blocked;
+  }
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  const auto x = static_cast<float>(direction.x()), y = static_cast<float>(direction.y()),
+             z = static_cast<float>(direction.z());
+  for (std::size_t first = 0; first < origins.size(); first += packet) {
+    alignas(64) int valid[packet];
+    RTCRay16 rays;
+    for (std::size_t k = 0; k < packet; ++k) {
+      const bool is_one = first + k < origins.size();
+      const Vec3& origin = origins[is_one ? first + k : first];
+      valid[k] = is_one ? -1 : 0;
+      rays.org_x[k] = static_cast<float>(origin.x());
+      rays.org_y[k] = static_cast<float>(origin.y());
+      rays.org_z[k] = static_cast<float>(origin.z());
+      rays.dir_x[k] = x, rays.dir_y[k] = y, rays.dir_z[k] = z;
+      rays.tnear[k] = 0.0f, rays.tfar[k] = endless, rays.time[k] = 0.0f;
+      rays.mask[k] = ~0u, rays.id[k] = 0, rays.flags[k] = 0;
+    }
+    rtcOccluded16(valid, scene, &context, &rays);
+    for (std::size_t k = 0; k < packet; ++k)
+      blocked += valid[k] != 0 && rays.tfar[k] < 0.0f ? 1 : 0;
+  }
+  return blocked;
+}
+
 } // namespace keeler::light

@@ -32,4 +32,8 @@ bool Tracer::blocked(const Vec3&, const Vec3&) const {
   return false;
 }
 
+std::size_t Tracer::count_blocked_in_cell(std::span<const Vec3>, const Vec3&, bool) const {
+  return 0;
+}
+
 } // namespace keeler::light

@@ -3,11 +3,13 @@
 
 #include <keeler/advice/warnings.hpp>
 #include <keeler/collision/restitution.hpp>
+#include <keeler/scene/examples.hpp>
 #include <keeler/scene/load.hpp>
 #include <keeler/scene/scene.hpp>
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cstdint>
 
@@ -47,6 +49,11 @@ void bind_scene(py::module_& module) {
       .def_property_readonly("kick_interval", &Scene::kick_interval)
       .def_property_readonly(
           "end", [](const Scene& scene) { return static_cast<double>(scene.time.end_step) * scene.time.step; });
+  module.def("is_example", [](const std::string& name) {
+    const std::vector<scene::ExampleScene>& all = scene::example_scenes();
+    return std::any_of(all.begin(), all.end(), [&](const scene::ExampleScene& one) { return one.name == name; });
+  });
+  module.def("example_text", [](const std::string& name) { return std::string(scene::find_example(name).toml); });
   module.def("stored_scene", &scene::parse_stored_scene, py::arg("text"), py::arg("name"));
   module.def("add_restitution_law", &add_c_function, py::arg("name"), py::arg("address"));
 }

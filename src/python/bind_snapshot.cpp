@@ -77,7 +77,7 @@ PythonSnapshot tile(const PythonSnapshot& snapshot, std::size_t nx, std::size_t 
 PythonSnapshot from_arrays(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
                            const Doubles& positions, const std::optional<Doubles>& velocities, const Doubles& radii,
                            const std::optional<Doubles>& masses, const std::optional<Doubles>& spins, bool relaxed,
-                           double shear_offset) {
+                           double shear_offset, const std::pair<double, double>& box, double orbital_frequency) {
   io::ParticleTable table;
   table.file = "the arrays";
   const auto count = positions.ndim() > 0 ? static_cast<std::size_t>(positions.shape(0)) : 0;
@@ -91,13 +91,17 @@ PythonSnapshot from_arrays(const std::string& text, const std::string& name, con
     table.masses = numbers_from(*masses, count, "masses");
   if (spins)
     table.spins = vectors_from(*spins, count, "spins");
-  table.frame.shear_offset = shear_offset;
+  table.frame = {box.first, box.second, shear_offset, orbital_frequency, 0.0};
   return make_interruptibly([&] {
     const scene::TableScene of = scene::parse_table_scene(text, name, overrides);
     Patch patch = initial_conditions::patch_from_table(table, of);
     if (relaxed)
       initial_conditions::relax(patch);
-    cells::require_no_overlap(patch, table.file);
+    try {
+      cells::require_no_overlap(patch, table.file);
+    } catch (const InvariantError& error) {
+      throw InvariantError(error.what() + initial_conditions::overlap_hint(patch));
+    }
     const Scene scene =
         decided_by(parse_scene(of.scene.resolved, name, {}, table.file), initial_conditions::scale_of(patch));
     return PythonSnapshot{std::move(patch), scene.resolved, true};
@@ -221,7 +225,7 @@ void bind_snapshot(py::module_& module) {
   module.def("analyze", &analyze_path, py::arg("path"), py::arg("since"), py::arg("until"));
   module.def("from_arrays", &from_arrays, py::arg("text"), py::arg("name"), py::arg("overrides"), py::arg("positions"),
              py::arg("velocities"), py::arg("radii"), py::arg("masses"), py::arg("spins"), py::arg("relax"),
-             py::arg("shear_offset"));
+             py::arg("shear_offset"), py::arg("box"), py::arg("orbital_frequency"));
 }
 
 } // namespace keeler::python

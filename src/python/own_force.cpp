@@ -205,10 +205,34 @@ private:
   KickMemory memory_;
 };
 
+// The arrays that a compiled force reads; it is given null for the others, which are not computed.
+struct ReadArrays {
+  bool positions = false, velocities = false, beyond_shear = false, masses = false, radii = false;
+
+  // Throws UsageError for a name that is none.
+  explicit ReadArrays(const std::vector<std::string>& names) {
+    const std::pair<const char*, bool*> all[] = {{"positions", &positions},
+                                                 {"velocities", &velocities},
+                                                 {"velocities_beyond_shear", &beyond_shear},
+                                                 {"masses", &masses},
+                                                 {"radii", &radii}};
+    for (const std::string& name : names) {
+      const auto found =
+          std::find_if(std::begin(all), std::end(all), [&](const auto& one) { return one.first == name; });
+      if (found == std::end(all))
+        throw UsageError(fmt::format("'{}' is no array of a force; reads may have positions, velocities, "
+                                     "velocities_beyond_shear, masses and radii",
+                                     name));
+      *found->second = true;
+    }
+  }
+};
+
 class CompiledForce : public forces::Force {
 public:
-  CompiledForce(std::string name, CompiledForceFunction function, std::vector<double> keys, double omega)
-      : name_(std::move(name)), function_(function), keys_(std::move(keys)), omega_(omega) {}
+  CompiledForce(std::string name, CompiledForceFunction function, const ReadArrays& reads, std::vector<double> keys,
+                double omega)
+      : name_(std::move(name)), function_(function), reads_(reads), keys_(std::move(keys)), omega_(omega) {}
 
   void accelerate(const Boundary& at, std::span<Vec3> accelerations) override {
     const double kick[] = {at.time / two_pi, at.interval / omega_, omega_, at.box.size_x, at.box.size_y, at.offset};
@@ -217,9 +241,12 @@ public:
     const auto one_block = [&](std::size_t number) {
       const std::size_t first = number * rows, count = std::min(rows, accelerations.size() - first);
       Block b;
-      fill(b, at.particles, first, count, at.frequencies, rotation, omega_);
-      function_(static_cast<std::int64_t>(count), b.positions, b.velocities, b.beyond_shear, b.masses, b.radii,
-                &at.particles.ids[first], kick, keys_.data(), b.accelerations);
+      fill(b, reads_, at.particles, first, count, at.frequencies, rotation, omega_);
+      const auto if_read = [](bool is_read, const double* array) { return is_read ? array : nullptr; };
+      function_(static_cast<std::int64_t>(count), if_read(reads_.positions, b.positions),
+                if_read(reads_.velocities, b.velocities), if_read(reads_.beyond_shear, b.beyond_shear),
+                if_read(reads_.masses, b.masses), if_read(reads_.radii, b.radii), &at.particles.ids[first], kick,
+                keys_.data(), b.accelerations);
       if (!take(b, accelerations.subspan(first, count), 1.0 / (omega_ * omega_)))
         finite = false;
     };
@@ -237,8 +264,8 @@ private:
   };
 
   // Gives the bits of state_at() and peculiar_velocity(). Not inlined: gcc 12 would warn of a block that is not filled.
-  [[gnu::noinline]] static void fill(Block& b, const Particles& particles, std::size_t first, std::size_t count,
-                                     const Frequencies& f, const Rotation& r, const double omega) {
+  [[gnu::noinline]] static void fill(Block& b, const ReadArrays& reads, const Particles& particles, std::size_t first,
+                                     std::size_t count, const Frequencies& f, const Rotation& r, const double omega) {
     const double half_kappa2 = 0.5 * f.kappa * f.kappa, shear = f.shear();
     const Body* const bodies = particles.bodies.data() + first;
     for (std::size_t k = 0; k < count; ++k) {
@@ -248,17 +275,25 @@ private:
       const double ec = el.e_cos * r.cos_e - el.e_sin * r.sin_e, es = el.e_sin * r.cos_e + el.e_cos * r.sin_e;
       const double drift = shear * el.guiding_x, x_speed = omega * (f.kappa * es);
       const double z_speed = omega * (f.nu * (el.i_cos * r.cos_i - el.i_sin * r.sin_i));
-      b.positions[3 * k] = el.guiding_x - ec;
-      b.positions[3 * k + 1] = el.guiding_y - drift * r.after + 2.0 / f.kappa * es;
-      b.positions[3 * k + 2] = el.i_sin * r.cos_i + el.i_cos * r.sin_i;
-      b.velocities[3 * k] = x_speed;
-      b.velocities[3 * k + 1] = omega * (2.0 * ec - drift);
-      b.velocities[3 * k + 2] = z_speed;
-      b.beyond_shear[3 * k] = x_speed;
-      b.beyond_shear[3 * k + 1] = omega * (half_kappa2 * ec);
-      b.beyond_shear[3 * k + 2] = z_speed;
-      b.masses[k] = body.mass;
-      b.radii[k] = body.radius;
+      if (reads.positions) {
+        b.positions[3 * k] = el.guiding_x - ec;
+        b.positions[3 * k + 1] = el.guiding_y - drift * r.after + 2.0 / f.kappa * es;
+        b.positions[3 * k + 2] = el.i_sin * r.cos_i + el.i_cos * r.sin_i;
+      }
+      if (reads.velocities) {
+        b.velocities[3 * k] = x_speed;
+        b.velocities[3 * k + 1] = omega * (2.0 * ec - drift);
+        b.velocities[3 * k + 2] = z_speed;
+      }
+      if (reads.beyond_shear) {
+        b.beyond_shear[3 * k] = x_speed;
+        b.beyond_shear[3 * k + 1] = omega * (half_kappa2 * ec);
+        b.beyond_shear[3 * k + 2] = z_speed;
+      }
+      if (reads.masses)
+        b.masses[k] = body.mass;
+      if (reads.radii)
+        b.radii[k] = body.radius;
     }
     std::fill_n(b.accelerations, 3 * count, 0.0);
   }
@@ -282,6 +317,7 @@ private:
 
   std::string name_;
   CompiledForceFunction function_;
+  ReadArrays reads_;
   std::vector<double> keys_;
   double omega_;
 };
@@ -309,18 +345,20 @@ void add_python_force(const std::string& name, py::object function, const py::li
                     IfTaken::replace);
 }
 
-void add_compiled_force(const std::string& name, std::uintptr_t address, const py::list& declared) {
+void add_compiled_force(const std::string& name, std::uintptr_t address, const py::list& declared,
+                        const std::vector<std::string>& read) {
   assert(address != 0);
+  const ReadArrays reads(read);
   const auto function =
       reinterpret_cast<CompiledForceFunction>(address); // NOLINT(performance-no-int-to-ptr): ctypes gives numbers
   const std::vector<Key> keys = force_keys(declared);
   forces::add_force({kept_text(name), keys,
-                     [name, keys, function](const Parameters& p, const forces::ForceContext& context) {
+                     [name, keys, function, reads](const Parameters& p, const forces::ForceContext& context) {
                        std::vector<double> values;
                        for (const Key& key : keys)
                          if (key.type == KeyType::number)
                            values.push_back(p.number(key.path));
-                       return std::make_unique<CompiledForce>(name, function, std::move(values),
+                       return std::make_unique<CompiledForce>(name, function, reads, std::move(values),
                                                               context.orbital_frequency);
                      }},
                     IfTaken::replace);
@@ -344,7 +382,8 @@ void bind_own_forces(py::module_& module) {
       .def_property_readonly("shear_offset", &Kick::shear_offset)
       .def_property_readonly("keys", &Kick::keys);
   module.def("add_python_force", &add_python_force, py::arg("name"), py::arg("function"), py::arg("keys"));
-  module.def("add_compiled_force", &add_compiled_force, py::arg("name"), py::arg("address"), py::arg("keys"));
+  module.def("add_compiled_force", &add_compiled_force, py::arg("name"), py::arg("address"), py::arg("keys"),
+             py::arg("reads"));
 }
 
 } // namespace keeler::python

@@ -28,7 +28,8 @@ MeasuredPart measured_part(const std::filesystem::path& path, const OrbitWindow&
   }
   const StoredPatches newest = load_newest_patch(path);
   const Patch& last = newest.patches.front();
-  const TransportReport report = TransportReport::of_run(path, RingScale::of(last, newest.driven), window);
+  const TransportReport report =
+      TransportReport::of_run(path, RingScale::of(last, newest.driven, newest.gravity.has_value()), window);
   const std::optional<Transport>& found = report.transport();
   const double since = found && found->since_found ? found->since_orbit : last.time_orbits - averaged_orbits;
   if (window.since || window.until)

@@ -108,7 +108,8 @@ RunResult evolve(const Scene& scene, const RunOptions& options, RunRequests& req
   const RingScale scale{.mass = simulation.means().mass,
                         .orbital_frequency = scene.planet.orbital_frequency,
                         .shear = simulation.state().box.shear,
-                        .driven = !scene.external_forces.empty()};
+                        .driven = !scene.external_forces.empty(),
+                        .attracts = scene.gravity.has_value()};
   std::optional<Transport> transport;
   if (options.ranks.is_root())
     transport = transport_of_run(folder.series(), scale, options.notice);

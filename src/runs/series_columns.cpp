@@ -42,6 +42,10 @@ bool has_spins(const Scene& scene) {
   return scene.collisions.friction.has_value();
 }
 
+bool is_driven(const Scene& scene) {
+  return !scene.external_forces.empty();
+}
+
 bool carries(const Scene& scene) {
   return scene.gravity && scene.gravity->carries();
 }
@@ -100,6 +104,14 @@ const SeriesColumn all_columns[] = {
      [](Sample s) {
        return s.means.random_stress / s.scene.planet.frequencies.shear() * s.scene.planet.orbital_frequency;
      }},
+    {"drift_viscosity_m2_s", "m²/s", "Viscosity of the mean motion at an instant: c̄_x c̄_y/S", ColumnKind::value,
+     "c̄_x c̄_y/S of the mean motion c̄ at this instant, as a head wind makes it: `keeler analyze` takes it from the "
+     "translational viscosity; only with external forces",
+     [](Sample s) {
+       return s.means.motion.x() * s.means.motion.y() / s.scene.planet.frequencies.shear() *
+              s.scene.planet.orbital_frequency;
+     },
+     is_driven},
     {"gravitational_viscosity_m2_s", "m²/s", "Viscosity: gravitational", ColumnKind::value,
      "gravity's shear stress dΦ/dγ over M S at this instant; nan where it was not measured; only with `[gravity]`, "
      "`output.stress_every` above 0, and not with `gravity.images = \"rings\"`",

@@ -52,8 +52,9 @@ Rates rates_of(const io::SeriesTable& series, const std::vector<std::size_t>& ro
   const Values &translational = series.of("translational_flux_kg_m2_s"),
                &collisional = series.of("collisional_flux_kg_m2_s");
   const Values &lost = series.of("energy_lost_j"), &random = series.of("random_energy_j");
-  const Values *const stress = series.find("gravitational_viscosity_m2_s"), *const potential =
-                                                                                series.find("potential_energy_j");
+  const Values *const stress = series.find("gravitational_viscosity_m2_s"),
+                      *const potential = series.find("potential_energy_j"),
+                      *const drift = series.find("drift_viscosity_m2_s");
   const double s = scale.shear * scale.orbital_frequency;
   assert(s > 0.0 && scale.mass > 0.0 && std::is_sorted(rows.begin(), rows.end()));
   Rates rates;
@@ -63,6 +64,8 @@ Rates rates_of(const io::SeriesTable& series, const std::vector<std::size_t>& ro
     const double flux = 1.0 / (scale.mass * s * time);
     rates.time.push_back(0.5 * (orbits[a] + orbits[b]));
     rates.translational.push_back((translational[b] - translational[a]) * flux);
+    if (drift) // which changes slowly, or as a free epicycle, whose mean is that of its values
+      rates.translational.back() -= 0.5 * ((*drift)[a] + (*drift)[b]);
     rates.collisional.push_back((collisional[b] - collisional[a]) * flux);
     double total = rates.translational.back() + rates.collisional.back();
     double loss = lost[b] - lost[a] + random[b] - random[a];
@@ -151,8 +154,8 @@ bool moves_at_random(const io::SeriesTable& series, const std::vector<std::size_
 
 } // namespace
 
-RingScale RingScale::of(const Patch& patch, bool driven) {
-  return {diagnostics::total_mass(patch), patch.orbital_frequency, patch.box.shear, driven};
+RingScale RingScale::of(const Patch& patch, bool driven, bool attracts) {
+  return {diagnostics::total_mass(patch), patch.orbital_frequency, patch.box.shear, driven, attracts};
 }
 
 bool enough_rows(const io::SeriesTable& series) {
@@ -191,7 +194,7 @@ Transport transport(const io::SeriesTable& series, const RingScale& scale, const
   result.translational = statistics::block_mean(rates.translational);
   result.collisional = statistics::block_mean(rates.collisional);
   result.from_loss = statistics::block_mean(rates.loss);
-  const bool complete = measures_gravity(series) || std::fabs(series.of("kick_work_j").back()) == 0.0;
+  const bool complete = measures_gravity(series) || !scale.attracts;
   if (measures_gravity(series))
     result.gravitational = statistics::block_mean(rates.gravitational);
   else if (complete)

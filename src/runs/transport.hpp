@@ -22,8 +22,9 @@ struct RingScale {
   double orbital_frequency = 0.0; ///< rad/s
   double shear = 1.5;             ///< S, in units of the orbital frequency
   bool driven = false;            ///< external forces do work: the loss does not come from the shear alone
+  bool attracts = true;           ///< the scene has self-gravity
 
-  static RingScale of(const Patch& patch, bool driven);
+  static RingScale of(const Patch& patch, bool driven, bool attracts);
 };
 
 /// Axisymmetric epicyclic waves as long as the box (epicyclic_waves.hpp) in the two halves of a window: mean fractions
@@ -43,7 +44,8 @@ struct Transport {
                             ///< and a third of the run
   std::size_t intervals = 0;
 
-  Estimate translational, collisional;
+  Estimate translational; ///< without the mean motion, where the series has it
+  Estimate collisional;
   std::optional<Estimate> gravitational; ///< none: not measured; 0 without self-gravity
   std::optional<Estimate> total;         ///< none: the gravitational one was not measured
   Estimate from_loss;                    ///< (loss + d(U + Φ)/dt) / (M S²): must equal `total`

@@ -28,6 +28,7 @@ for s in found["sights"]:
     assert abs(s["phase_degrees"] - 60) < 1e-6 and s["rays"] == 8192
     assert abs(s["reflectance"] - s["single_scattering"] - s["multiple_scattering"]) < 1e-12
     assert 0 < s["reflectance_error"] < s["reflectance"] and 0 < s["transmission"] < 1
+assert (found["since_orbit"], found["until_orbit"]) == (0, 0.02)
 assert len(found["azimuthal_asymmetry"]) == 2 and found["azimuthal_asymmetry"][0]["asymmetry"] is None
 EOF
 accepts "a table" photometry "$snap" --elevation 20 --rays 8192 --csv "$work/table.csv" --figure "$work/figure.svg"
@@ -42,6 +43,13 @@ grep -q '"ring_longitude_degrees": 250' "$work/out" || fail "observations: not a
 accepts "a published geometry" photometry "$snap" --geometry hubble-tilt --azimuth 0 --rays 100
 accepts "other laws" photometry "$snap" --elevation 20 --azimuth 0 --law henyey_greenstein=-0.3 --rays 100
 
+accepts "a figure of one point" photometry "$snap" --elevation 20 --azimuth 0 --rays 100 --figure "$work/point.svg"
+grep -q "<svg" "$work/point.svg" || fail "no figure of one point"
+runs 0 photometry "$work/run" --since 0.01 --elevation 20 --azimuth 0,40 --rays 100 --law lambert -v
+grep -qF "2 snapshots of the orbits 0.01 to 0.02 at 2 sights, law lambert, albedo 0.5: 100 rays per sight and snapshot" "$work/err" || fail "what it does: $(cat "$work/err")"
+runs 0 occultation "$snap" --elevation 90 --tracks 4
+grep -qF "an azimuth has no meaning" "$work/err" || fail "a star overhead: $(cat "$work/err")"
+refuses_with 4 "photometry of a checkpoint" "is not a Keeler snapshot but a checkpoint" photometry "$(newest_checkpoint "$work/run")" --elevation 20
 refuses "no sight" "give --elevation, --observations or --geometry" photometry "$snap"
 refuses "a ray in the plane" "is not an elevation" photometry "$snap" --elevation 0
 refuses "an impossible phase" "the phase angle is from 10 to 150 degrees, not 3" photometry "$snap" --elevation 20 --sun-elevation 10 --phase 3
@@ -58,7 +66,8 @@ accepts "occultation" occultation "$work/run" --since 0 --elevation 10,30 --azim
 python3 - "$work/out" <<'EOF' || fail "occultation: the JSON is not as it says"
 import json, sys
 found = json.load(open(sys.argv[1]))
-assert len(found["lines_of_sight"]) == 6
+assert len(found["lines_of_sight"]) == 6 and not found["stopped"]
+assert (found["snapshots"], found["since_orbit"], found["until_orbit"]) == (3, 0, 0.02)
 for s in found["lines_of_sight"]:
     assert len(s["autocovariance"]) == 33 and abs(s["autocovariance"][0] - s["excess_variance"]) < 1e-15
     assert 0 < s["transmission"] < 1 and s["effective_radius_m"] > 0
@@ -88,4 +97,26 @@ wait $child || code=$?
 [ "$code" -eq 75 ] || fail "a stop: exit $code"
 grep -q '"stopped": true' "$work/out" || fail "a stop: $(cat "$work/out")"
 grep -q "stopped (on request) with 1 of 4 sights" "$work/err" || fail "a stop: $(cat "$work/err")"
+"$keeler" occultation "$snap" --elevation 20 --azimuth 0,1,2,3 --tracks 300 --samples 100000 --json >"$work/out" 2>"$work/err" &
+child=$!
+sleep 1.5
+kill -INT $child
+code=0
+wait $child || code=$?
+if [ "$code" -eq 75 ]; then
+  grep -q '"stopped": true' "$work/out" || fail "a stop of an occultation: $(cat "$work/out")"
+else # where not one line was done
+  [ "$code" -eq 1 ] || fail "a stop of an occultation: exit $code"
+  grep -q "stopped before a line of sight was traced" "$work/err" || fail "a stop of an occultation: $(cat "$work/err")"
+fi
+
+runs 0 bench light --count 2400 --state uniform --repeats 1 --elevation 40
+prints "bench light" "Embree alone, packets of 16"
+runs 0 bench light --from "$snap" --repeats 1 --json
+python3 - "$work/out" <<'EOF' || fail "bench light: the JSON is not as it says"
+import json, sys
+found = json.load(open(sys.argv[1]))
+assert found["paths_per_s"] > 0 and found["count"] > 0 and found["one_percent_s"] > 0 and "snap_000000" in found["from"]
+EOF
+refuses "a state for a snapshot" "--state" bench light --state uniform --from "$snap"
 report

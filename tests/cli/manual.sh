@@ -73,6 +73,9 @@ sed -i 's/^      "/    "/' "$work/out" # of its rows
 names bench
 runs 0 bench step --count 200 --state uniform --repeats 1 --json
 names bench
+if "$keeler" bench light --count 2400 --state uniform --repeats 1 --json >"$work/out" 2>/dev/null; then # with Embree
+  names bench
+fi
 runs 0 run "$work/scene.toml" -o "$work/run" --set time.end=0.004 --json
 names run
 printf 'scene = "scene.toml"\n[set]\n"time.end" = 0.004\n' >"$work/grid.toml"

@@ -250,7 +250,12 @@ class Starts(InAFolder):
 
         structured = np.zeros(2, dtype=[("x", float), ("y", float), ("z", float)])
         for words, wrong in (
-            ("ids cannot be given", dict(positions=places, radii=1.5, ids=[1, 2])),
+            ("ids are 2 whole numbers", dict(positions=places, radii=1.5, ids=[1, 1])),
+            ("ids are 2 whole numbers", dict(positions=places, radii=1.5, ids=[1, 2, 3])),
+            ("box is", dict(positions=places, radii=1.5, box=[60.0, -1.0])),
+            ("set box.size = ", dict(positions=places, radii=1.5, box=[60.0, 61.0])),
+            ("velocities are for Omega", dict(positions=places, radii=1.5, orbital_frequency=1e-4)),
+            ("meets across an edge", dict(positions=places * [2.99, 0.0, 0.0], radii=1.5)),
             ("^unknown key|^speeds", dict(positions=places, radii=1.5, speeds=1.0)),
             ("positions has the type", dict(positions=structured, radii=1.5)),
             ("positions has the type", dict(positions=places.astype(str), radii=1.5)),

@@ -1,74 +1,14 @@
-"""Snapshots that others changed: what no ring has, values that stand elsewhere or nowhere, and torn or flipped bytes are
-refused by one line, soon, and nothing of them is taken."""
+"""Snapshots that others changed: what no ring has is refused by one line, soon, and nothing of them is taken."""
 
-import os
-import random
-import shutil
-import subprocess
-import tempfile
 import unittest
-from pathlib import Path
 
 import h5py
 import keeler as ring
 import numpy as np
-
-KEELER = os.environ["KEELER_PROGRAM"]
-
-SCENE = """
-planet.preset = "saturn-a-ring"
-box.size = [30.0, 30.0]
-particles = { optical_depth = 0.3, density = 450.0, sizes = { law = "equal", radius = 1.0 } }
-collisions = { restitution = { law = "constant", value = 0.5 } }
-time = { step = 2e-3, end = 0.004 }
-"""
+from foreign import Foreign, keeler
 
 
-def keeler(*arguments):
-    return subprocess.run([KEELER, *map(str, arguments)], capture_output=True, timeout=60)
-
-
-class ForeignFiles(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.folder = Path(cls.temporary.name)
-        cls.scene, cls.whole, cls.file = (cls.folder / name for name in ("scene.toml", "whole.hdf", "changed.hdf"))
-        cls.scene.write_text(SCENE)
-        assert keeler("generate", cls.scene, "-o", cls.whole).returncode == 0
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.temporary.cleanup()
-
-    def refused(self, code, words):
-        """By all that read snapshots of others."""
-        for command in (("analyze", self.file), ("render", self.file, "-o", self.folder / "picture.png"),
-                        ("run", self.scene, "--from", self.file, "-o", self.folder / "run")):
-            done = keeler(*command)
-            lines = [line for line in done.stderr.decode().splitlines() if "replaces it" not in line]
-            self.assertEqual((done.returncode, len(lines)), (code, 1), (command[0], lines[:3]))
-            self.assertIn(words, lines[0])
-            self.assertIn("changed.hdf", lines[0])
-        self.assertFalse((self.folder / "picture.png").exists())
-        self.assertFalse((self.folder / "run").exists())
-
-    def change(self, how):
-        shutil.copy(self.whole, self.file)
-        with h5py.File(self.file, "r+") as file:
-            how(file, file["PartType1"])
-
-    def replace(self, name, make):
-        """The dataset, and the second name that ParaView knows it by."""
-
-        def how(file, part):
-            count = part[name].shape[0]
-            del file["VTKHDF"]
-            del part[name]
-            make(part, count)
-
-        self.change(how)
-
+class ForeignFiles(Foreign):
     def test_nothing_changed(self):
         self.change(lambda file, part: None)
         self.assertEqual(keeler("analyze", self.file).returncode, 0)
@@ -278,128 +218,6 @@ class ForeignFiles(unittest.TestCase):
             self.assertEqual((done.returncode, done.stderr.count(b"\n")), (4, 1), done.stderr)
             self.assertIn(attribute.encode(), done.stderr)
         self.assertEqual(written("x", "_FillValue", -1.0).returncode, 0)
-
-    def test_a_file_that_is_open_for_writing(self):
-        """h5py holds a lock meanwhile; the file on the disk may be half of it."""
-        self.change(lambda file, part: None)
-        table = self.folder / "table.h5"
-        with h5py.File(self.file, "r+") as file, h5py.File(table, "w") as particles:
-            for name in "xyz":
-                particles[name] = [0.0]
-            particles["r"] = [1.0]
-            file.flush()
-            self.refused(4, "another program has it open for writing")
-            done = keeler("generate", self.scene, "--from-table", table, "-o", self.folder / "none.hdf")
-            self.assertEqual(done.returncode, 4)
-            self.assertIn(b"another program has it open for writing", done.stderr)
-        with h5py.File(self.file, "r"):  # to read beside a reader is no harm
-            self.assertEqual(keeler("analyze", self.file).returncode, 0)
-
-    def test_a_file_of_gadgets_own(self):
-        """Each way in says what the file lacks and what can be done, and none sends it to the other."""
-        gadget = self.folder / "gadget.hdf5"
-        with h5py.File(gadget, "w") as file:
-            file.create_group("Header").attrs["NumPart_ThisFile"] = [0, 1, 0, 0, 0, 0]
-            for name, values in (("Coordinates", [[0.0, 0.0, 0.0]]), ("Masses", [1.0]), ("ParticleIDs", [1])):
-                file[f"PartType1/{name}"] = values
-        done = keeler("run", self.scene, "--from", gadget, "-o", self.folder / "run")
-        self.assertEqual(done.returncode, 4)
-        self.assertIn(b"it lacks /Code, /RingBox, /Parameters. To start from its particles, write their x, y, z", done.stderr)
-        done = keeler("generate", self.scene, "--from-table", gadget, "-o", self.folder / "none.hdf")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn(b"it states no units; add UnitLength_in_cm", done.stderr)
-        self.assertNotIn(b"--from", done.stderr)
-        self.replace("Radius", lambda part, count: None)
-        self.refused(4, "it lacks /PartType1/Radius")
-
-    def test_no_particles(self):
-        def how(file, part):
-            del file["VTKHDF"]
-            for name in list(part):
-                shape, kind = (0,) + part[name].shape[1:], part[name].dtype
-                del part[name]
-                part.create_dataset(name, shape=shape, dtype=kind)
-            for name in ("NumPart_ThisFile", "NumPart_Total"):
-                file["Header"].attrs[name] = [0] * 6
-
-        self.change(how)
-        self.refused(2, "holds no particles")
-
-    def test_values_that_stand_elsewhere(self):
-        other = self.folder / "other"
-        np.ones(1000).tofile(other)
-
-        def virtual(part, count):
-            layout = h5py.VirtualLayout(shape=(count,), dtype="f8")
-            layout[:] = h5py.VirtualSource(str(self.whole), "PartType1/Radius", shape=(count,))
-            part.create_virtual_dataset("Radius", layout)
-
-        def link(part, _):
-            part["Radius"] = h5py.ExternalLink(str(self.whole), "/PartType1/Radius")
-
-        def storage(part, count):
-            part.create_dataset("Radius", (count,), "f8", external=[(str(other), 0, 8 * count)])
-
-        for make, words in ((virtual, "its values are stored in another file"), (storage, "its values are stored in another file"),
-                            (link, "a link into another file")):
-            with self.subTest(make.__name__):
-                self.replace("Radius", make)
-                self.refused(4, words)
-
-    def test_more_than_the_file_can_hold(self):
-        def how(file, part):
-            del file["VTKHDF"]
-            for name in list(part):
-                shape, kind = (1 << 40,) + part[name].shape[1:], part[name].dtype
-                del part[name]
-                part.create_dataset(name, shape=shape, dtype=kind, chunks=(1024,) + shape[1:])
-
-        self.change(how)
-        self.refused(4, "it claims")
-
-    def test_torn_and_flipped_bytes(self):
-        """Without the seal, as another program leaves a file. What HDF5 does not notice may be taken where it is possible."""
-        draw = random.Random(20)
-        content = self.whole.read_bytes()[:-64]
-        refused = 0
-        for _ in range(200):
-            torn = bytearray(content)
-            for _ in range(draw.choice((1, 1, 2, 8))):
-                torn[draw.randrange(len(torn))] = draw.randrange(256)
-            if draw.random() < 0.2:
-                torn = torn[: draw.randrange(len(torn))]
-            self.file.write_bytes(torn)
-            done = keeler("analyze", self.file)
-            lines = done.stderr.decode().splitlines()
-            if done.returncode != 0:
-                refused += 1
-                self.assertIn(done.returncode, (2, 3, 4), lines)
-                self.assertEqual(len(lines), 1, lines[:3])
-        self.assertGreater(refused, 50)
-
-    def test_files_that_break_hdf5(self):
-        """Found by the fuzzer: the library crashes on them in a child process, and that is all."""
-        files = sorted((Path(os.environ["KEELER_SOURCE_DIR"]) / "tests/fuzz/corpus/foreign").glob("breaks-*"))
-        self.assertGreater(len(files), 3)
-        for file in files:
-            with self.subTest(file.name):
-                done = keeler("info", file)
-                self.assertEqual((done.returncode, done.stderr.count(b"\n")), (4, 1), done.stderr)
-                # as its memory lies
-                self.assertRegex(done.stderr, b"the library breaks on it|its structures are damaged")
-                with self.assertRaises(ring.IoError):
-                    ring.read(file)
-
-    def test_words_of_others_in_messages(self):
-        long = self.folder / "long.toml"
-        long.write_text(SCENE.replace('"constant"', '"' + "x" * 1_000_000 + '"'))
-        done = keeler("check", long)
-        self.assertEqual(done.returncode, 2)
-        self.assertLess(len(done.stderr), 2100)
-        done = subprocess.run([KEELER.encode(), b"check", str(self.scene).encode(), b"--set",
-                               b'particles.density="\xff\x1b[31m"'], capture_output=True, timeout=60)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn(b'"??[31m"', done.stderr)
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from unittest import mock
 
+import keeler
 import stand_in
 
 MANUAL = Path(os.environ["KEELER_SOURCE_DIR"]) / "docs" / "manual"
@@ -39,6 +40,7 @@ class Manual(unittest.TestCase):
                 os.chdir(before)
 
     @unittest.skipUnless(shutil.which("cc"), "no C compiler")
+    @unittest.skipUnless(keeler._core.can_trace(), "this Keeler was built without Embree")
     @unittest.skipUnless(find_spec("pandas") and find_spec("xarray"), "no pandas or no xarray")
     def test_python(self):
         self.run_page("python.md")

@@ -265,6 +265,22 @@ class CompiledForces(Folder):
         sim = keeler.Simulation(RING, either=table).run(0.05)
         return sim.by_id(sim.elements)
 
+    def test_a_compiled_force_gets_the_arrays_that_it_reads(self):
+        kind = ctypes.CFUNCTYPE(None, ctypes.c_int64, *[ctypes.c_void_p] * 9)
+        given = []
+
+        @kind
+        def looks(count, *arrays):
+            given.append([array is not None for array in arrays[:5]])
+
+        keeler.add_force("looks", looks, reads=["masses", "velocities"])
+        keeler.set_threads(1)
+        keeler.Simulation(RING, looks={}).step()
+        self.assertEqual(given[0], [False, True, False, True, False])
+        for wrong in (["mass"], "masses", [3]):
+            with self.assertRaisesRegex(keeler.UsageError, "is no array|reads is|an array"):
+                keeler.add_force("looks", looks, reads=wrong)
+
     def test_a_compiled_force_is_that_of_python(self):
         self.assertTrue(np.array_equal(self.elements(self.library.drag, RATE, rate=3e-5),
                                        self.elements(drag, RATE, rate=3e-5)))

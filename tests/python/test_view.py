@@ -63,9 +63,11 @@ class Bits(unittest.TestCase):
             self.assertAlmostEqual(head["frame"]["orbits"], before + 0.006)
             view.get("limit?steps_per_second=20", "POST")
             view.get("resume", "POST")
-            slow = view.state()["orbits"]
+            begin, slow = time.monotonic(), view.state()["orbits"]
             time.sleep(1.0)
-            self.assertAlmostEqual((view.state()["orbits"] - slow) / 0.002, 20, delta=8)
+            steps, elapsed = (view.state()["orbits"] - slow) / 0.002, time.monotonic() - begin
+            self.assertLessEqual(steps, 20 * elapsed + 2)  # on any machine; a slow one makes fewer
+            self.assertGreaterEqual(steps, 3)
             view.get("stop", "POST")
             view.process.wait(30)
         self.assertEqual(view.process.returncode, 75, view.err)
@@ -113,6 +115,8 @@ class Files(unittest.TestCase):
     def test_refusals(self):
         folder = in_folder(self)
         (folder / "empty").mkdir()
+        (folder / "full").mkdir()
+        keeler.Simulation(folder / "scene.toml").save(folder / "full/checkpoint.h5")
         for arguments, message in (
             ([folder / "absent.toml"], "absent.toml"),
             ([folder / "empty"], "log.jsonl is missing"),
@@ -120,11 +124,13 @@ class Files(unittest.TestCase):
             ([folder / "scene.toml", "--resume"], "--resume continues a run"),
             ([folder / "scene.toml", "--port", "99999"], "is not a port from 1 to 65535"),
             ([folder / "scene.toml", "-o", ""], "is empty"),
+            ([folder / "scene.toml", "-o", folder / "full"], "is not empty"),
+            ([folder / "full/checkpoint.h5"], "is not a Keeler snapshot but a checkpoint"),
         ):
             done = subprocess.run([KEELER, "view", *map(str, arguments)], capture_output=True, text=True, timeout=60)
             self.assertIn(done.returncode, (2, 4), done)
             self.assertIn(message, done.stderr)
-            self.assertEqual(done.stderr.count("\n"), 1)
+            self.assertEqual((done.stderr.count("\n"), done.stdout), (1, ""))  # no address
 
     def test_open(self):
         """The browser gets the address by a file that nobody else reads."""
@@ -201,6 +207,11 @@ class InPython(unittest.TestCase):
             sim.widget(height=0)
         with sim.view() as view, self.assertRaisesRegex(keeler.RunError, "no view at port"):
             keeler.Simulation(SCENE).view(port=int(view.address.split(":")[2].split("/")[0]))
+        with sim.view() as view:
+            port = int(view.address.split(":")[2].split("/")[0])
+            self.assertEqual(sim.view(port=port).address, view.address)
+            with self.assertRaisesRegex(keeler.UsageError, f"open at the port {port}, not {port - 1}; close"):
+                sim.view(port=port - 1)
 
     def test_the_interpreter_ends_and_forks(self):
         """Also with an open page, and while another thread computes."""

@@ -1,5 +1,4 @@
-// Light scattered by layers and wakes: exact solutions in the limit of thin layers, conservation, and what is
-// published.
+// Light scattered by layers: exact solutions in the limit of thin layers, conservation, reciprocity.
 #include "rows.hpp"
 
 #include "unit/light/chandrasekhar.hpp"
@@ -10,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace keeler::validation {
@@ -186,104 +184,10 @@ std::vector<Row> exact_light() {
   return rows;
 }
 
-// The asymmetry over azimuth at several elevations.
-struct Asymmetries {
-  std::vector<double> heights, amplitudes, minima, means;
-};
-
-Asymmetries asymmetries_of(std::span<const Patch> patches, const std::vector<double>& degrees) {
-  Asymmetries found;
-  light::PhotometrySettings settings;
-  settings.law = light::law_named("callisto", 0.5);
-  settings.rays = 16384;
-  std::vector<double> azimuths;
-  for (int k = 0; k < 12; ++k)
-    azimuths.push_back(15.0 * k * in_rad);
-  const double phase[] = {6.0 * in_rad};
-  for (const double elevation : degrees) {
-    const double b[] = {elevation * in_rad};
-    const std::vector<Photometry> all = light::photometry(patches, light::sight_grid(b, {}, phase, azimuths), settings);
-    const auto asymmetry = light::brightness_asymmetry(all);
-    double mean = 0.0;
-    for (const Photometry& one : all)
-      mean += one.reflectance.value / static_cast<double>(all.size());
-    found.heights.push_back(elevation);
-    found.amplitudes.push_back(asymmetry->amplitude);
-    found.minima.push_back(asymmetry->minimum_longitude / in_rad + 180.0);
-    found.means.push_back(mean);
-  }
-  return found;
-}
-
-void add_asymmetry_rows(std::vector<Row>& rows, const std::string& what, const Ran& ran) {
-  const auto last = std::span(ran.snapshots).last(std::min<std::size_t>(ran.snapshots.size(), 10));
-  const Asymmetries found = asymmetries_of(last, {4.5, 7.0, 10.0, 12.5, 15.0, 20.0, 26.0});
-  const auto top = static_cast<std::size_t>(std::max_element(found.amplitudes.begin(), found.amplitudes.end()) -
-                                            found.amplitudes.begin());
-  const std::string command = ran.command + "; keeler photometry DIR --elevation 4.5,7,10,12.5,15,20,26";
-  rows.push_back({.what = "elevation of the strongest asymmetry, degrees, " + what,
-                  .measured = found.heights[top],
-                  .expected = 12.5,
-                  .tolerance = 2.6,
-                  .tolerance_is = "10 to 15 degrees",
-                  .source = "Saturn's A ring (Salo et al. 2004; French et al. 2007)",
-                  .command = command});
-  rows.push_back(
-      {.what = "longitude of the minimum at B = 10 degrees, " + what,
-       .measured = found.minima[2],
-       .expected = 247.5,
-       .tolerance = 4.5,
-       .tolerance_is = "245 to 250 degrees, and 2 for a small box",
-       .source = "Saturn's A ring (Salo et al. 2004; French et al. 2007)",
-       .command = "of the same run",
-       .known_difference =
-           "One run of a small box: the longitude of a patch scatters, and no mean over seeds has been taken."});
-  rows.push_back({.what = "largest asymmetry, (max - min)/(max + min), " + what,
-                  .measured = found.amplitudes[top],
-                  .expected = 0.15,
-                  .tolerance = 0.10,
-                  .tolerance_is = "25 % is read as either the half or the whole range over the mean",
-                  .source = "Saturn's A ring, up to 25 % near 128,000 km (French et al. 2007)",
-                  .command = "of the same run"});
-  rows.push_back({.what = "mean I/F at B = 26 over 4.5 degrees, " + what,
-                  .measured = found.means.back() / found.means.front(),
-                  .expected = 0.65,
-                  .tolerance = 0.30,
-                  .tolerance_is = "that it falls: gaps open to the eye",
-                  .source = "the negative tilt effect of the A ring (Salo et al. 2004)",
-                  .command = "of the same run"});
-}
-
-std::vector<Row> light_of_wakes() {
-  std::vector<Row> rows;
-  if (!light::can_trace())
-    return rows;
-  const std::vector<std::string> keys = {"particles.density=450", "box.size_in_wavelengths=[8,8]", "time.end=4"};
-  add_asymmetry_rows(rows, "equal spheres", run_example("a-ring-wakes", keys));
-  add_asymmetry_rows(rows, "radii 0.3 to 3 m", run_example("clumped-power-law", {"time.end=3"}));
-  return rows;
-}
-
-std::vector<Row> light_of_dense_layer() {
-  if (!light::can_trace())
-    return {};
-  const Ran ran = run_example("dense-b-ring", {"time.end=1"});
-  const Asymmetries found = asymmetries_of(std::span(ran.snapshots).last(1), {4.5, 10.0, 26.0});
-  return {{.what = "mean I/F at B = 26 over 4.5 degrees, optical depth 3",
-           .measured = found.means.back() / found.means.front(),
-           .expected = 1.2,
-           .tolerance = 0.19,
-           .tolerance_is = "that it rises, by less than 40 %",
-           .source = "the tilt effect of the B ring by shadowing (Salo & French 2010, Icarus 210, 785)",
-           .command = ran.command + "; keeler photometry DIR --elevation 4.5,26"}};
-}
-
 } // namespace
 
 std::vector<Subject> light_subjects() {
-  return {{"light", "Light", false, exact_light},
-          {"light-wakes", "Light of wakes", false, light_of_wakes},
-          {"light-dense", "Light of a dense layer", false, light_of_dense_layer}};
+  return {{"light", "Light", false, exact_light}};
 }
 
 } // namespace keeler::validation

@@ -44,6 +44,7 @@ std::vector<Subject> particle_subjects();
 std::vector<Subject> satellite_subjects();
 std::vector<Subject> moonlet_subjects();
 std::vector<Subject> light_subjects();
+std::vector<Subject> light_of_rings_subjects();
 
 /// A run of a scene of examples/, by its folder or its file, with some keys set, in a folder that is gone afterwards.
 struct Ran {

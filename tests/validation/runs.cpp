@@ -45,7 +45,9 @@ Estimate mean_of(const std::vector<double>& values) {
 }
 
 runs::Transport transport_since(const Ran& ran, double orbit) {
-  return transport(ran.series, runs::RingScale::of(ran.snapshots.back(), false), {.since = orbit, .until = {}});
+  return transport(ran.series,
+                   runs::RingScale::of(ran.snapshots.back(), false, ran.series.find("kick_work_j")->back() != 0.0),
+                   {.since = orbit, .until = {}});
 }
 
 } // namespace keeler::validation

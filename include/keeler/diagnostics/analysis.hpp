@@ -116,7 +116,7 @@ struct Analysis {
   std::array<double, 3> dispersion_r_omega{}; ///< these in ⟨r⟩ Ω
   double scale_height_m = 0.0;                ///< √⟨z²⟩
   double translational_viscosity_m2_s = 0.0;  ///< ⟨ẋ (ẏ + S x)⟩ / S without the mean motion
-  double random_energy_m2_s2 = 0.0;           ///< ⟨½κ²e² + ½ν²i²⟩ per unit mass
+  double random_energy_m2_s2 = 0.0;           ///< ⟨½κ²e² + ½ν²i²⟩ per unit mass, without the mean motion
 
   std::optional<double> wake_pitch_degrees; ///< empty without wakes
   std::optional<double> wake_spacing_m;     ///< radial; empty without wakes or without a side maximum

@@ -8,6 +8,7 @@
 #include <keeler/light/photometry.hpp>
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,19 +28,20 @@ struct FootprintTrack {
 /// What one line of sight shows. The finite number of rays adds nothing to the moments: they are made of numbers of
 /// pairs, triples and quadruples of rays that pass. Errors come from the scatter of the tracks.
 struct FootprintStatistics {
-  Bearing star;                        ///< where it is seen
-  Estimate transmission;               ///< mean T
-  Estimate variance;                   ///< of T; observers' excess variance over the square of the star's counts
-  Estimate skewness;                   ///< third central moment over variance^{3/2}
-  double kurtosis = 0.0;               ///< fourth central moment over variance², less 3
+  Bearing star;                     ///< where it is seen
+  Estimate transmission;            ///< mean T
+  Estimate variance;                ///< of T; observers' excess variance over the square of the star's counts
+  std::optional<Estimate> skewness; ///< third central moment over variance^{3/2}; empty unless the variance is above 0
+  std::optional<double> kurtosis;   ///< fourth central moment over variance², less 3; empty likewise
   std::vector<double> autocovariance;  ///< of samples 0, 1, 2 … apart, up to half a track; the first is the variance
   std::optional<double> optical_depth; ///< normal: −sin B ln T; empty if no light passes
   std::optional<double>
       effective_radius; ///< m: of equal spheres at random with this T and variance; empty without a variance
 };
 
-/// Returns the statistics of all snapshots together at each bearing of the star (elevation ≠ 0). Throws Error without
-/// Embree, Interrupted, UsageError for a patch without particles.
+/// Returns the statistics of all snapshots together at each bearing of the star (elevation ≠ 0). When the work is to be
+/// abandoned (interrupt.hpp), returns those of the bearings that are done. Throws Error without Embree, UsageError for
+/// a patch without particles.
 std::vector<FootprintStatistics> footprint_statistics(std::span<const Patch> patches, std::span<const Bearing> stars,
                                                       const FootprintTrack& track,
                                                       const std::function<void(const Progress&)>& report = {});

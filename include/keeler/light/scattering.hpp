@@ -37,7 +37,8 @@ public:
   /// symmetric in `to` and `from` but for the factor normal·from of a surface law.
   virtual double brightness(const Vec3& normal, const Vec3& to, const Vec3& from) const = 0;
 
-  /// Draws a direction from which light came that goes to `to`.
+  /// Draws a direction from which light came that goes to `to`. The stream of random numbers is Keeler's own: laws of
+  /// one's own are made by particle_law() and surface_law().
   virtual Scattering scatter(const Vec3& normal, const Vec3& to, RandomStream& random) const = 0;
 
   /// True for a particle law: the light belongs to a place of the disc, not to a point of the surface.
@@ -54,6 +55,15 @@ using PhaseFunction = std::function<double(double)>;
 /// between them: the function is called only here. Throws UsageError if a value is negative or not finite, or all are
 /// 0.
 SharedLaw particle_law(const PhaseFunction& phase_function, double albedo);
+
+/// The I/F of a point of a surface as a function of μ₀ and μ, the cosines of the angles between the surface's normal
+/// and the directions to source and observer, both in (0, 1], and of the phase angle α, rad. Its scale does not matter.
+using SurfaceFunction = std::function<double(double cosine_of_source, double cosine_of_observer, double phase)>;
+
+/// A surface law as given, scaled so that a sphere scatters the fraction `albedo`. Tabulated once, over both angles to
+/// the normal and the azimuth between them, every 2.5°, and linear between: the function is called only here, and what
+/// is narrower than that is lost. Throws UsageError if a value is negative or not finite, or all are 0.
+SharedLaw surface_law(const SurfaceFunction& brightness, double albedo);
 
 /// P = 1.
 SharedLaw isotropic_law(double albedo);

@@ -24,7 +24,7 @@ Contents:
 - ``analyze()`` of each of these returns ``Numbers``; ``quantities`` lists their units and meanings.
 - ``Columns`` and ``Rows``: the tables of runs and sweeps; ``to_pandas()`` and ``to_xarray()`` where these are installed.
 - ``Simulation.view`` and ``widget``: a page that shows it as it runs (``View``).
-- ``photometry``: the light of any of them. ``render``: a picture.
+- ``photometry``: the light of any of them; ``occultation``: a star behind it. ``render``: a picture.
 - ``add_force``, ``add_restitution_law``, ``add_size_law``, ``add_start``, ``add_quantity``, ``add_series_column``:
   physics and numbers of your own, called by name; ``Key`` declares a number of theirs.
 - ``set_threads``, ``threads``: results are bitwise identical for any number of threads.
@@ -65,7 +65,7 @@ _border.guard(_core)
 
 from . import own, scenes
 from .errors import Error, InvariantError, IoError, RunError, UsageError
-from .light import photometry
+from .light import Occultations, Sights, SurfaceLaw, occultation, photometry
 from .numbers import Numbers, Quantity, quantities
 from .own import Key, StartRequest, add_force, add_quantity, add_series_column, add_size_law, add_start
 from .rebound import from_rebound, to_rebound
@@ -90,14 +90,17 @@ __all__ = [
     "Key",
     "Kick",
     "Numbers",
+    "Occultations",
     "Picture",
     "Quantity",
     "Rows",
     "Run",
     "RunError",
+    "Sights",
     "Simulation",
     "Snapshot",
     "StartRequest",
+    "SurfaceLaw",
     "UsageError",
     "View",
     "add_force",
@@ -110,6 +113,7 @@ __all__ = [
     "from_rebound",
     "generate",
     "load",
+    "occultation",
     "photometry",
     "program",
     "quantities",

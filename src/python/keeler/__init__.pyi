@@ -229,7 +229,9 @@ class Kick:
 
 _Keys = Mapping[str, Union[float, Key]]
 
-def add_force(name: str, function: Callable[[Kick, _Floats], None] | Any, keys: _Keys | None = None) -> None: ...
+def add_force(
+    name: str, function: Callable[[Kick, _Floats], None] | Any, keys: _Keys | None = None, reads: Sequence[str] = ...
+) -> None: ...
 def add_size_law(
     name: str, quantile: Callable[[_Floats, dict[str, float]], ArrayLike], keys: _Keys | None = None
 ) -> None: ...
@@ -239,6 +241,18 @@ def add_start(
 def add_quantity(name: str, unit: str, function: Callable[[Snapshot], float], meaning: str = "") -> None: ...
 def add_series_column(name: str, unit: str, function: Callable[[Snapshot], float], meaning: str = "") -> None: ...
 
+class SurfaceLaw:
+    function: Callable[[float, float, float], float]
+    def __init__(self, function: Callable[[float, float, float], float]) -> None: ...
+
+class Sights(list[Numbers]):
+    asymmetries: list[Numbers]
+    def __init__(self, sights: Sequence[Numbers], asymmetries: list[Numbers]) -> None: ...
+
+class Occultations(list[Numbers]):
+    wake_model: Numbers | None
+    def __init__(self, lines: Sequence[Numbers], wake_model: Numbers | None) -> None: ...
+
 def photometry(
     what: Snapshot | Simulation | Run | _Path,
     elevation: float | Sequence[float],
@@ -246,14 +260,29 @@ def photometry(
     *,
     sun_elevation: float | Sequence[float] | None = None,
     phase: float | Sequence[float] = 6.0,
-    law: str | Callable[[float], float] = "callisto",
+    law: str | Callable[[float], float] | SurfaceLaw = "callisto",
     albedo: float = 0.5,
     rays: int = 100000,
     error: float | None = None,
     seed: int = 1,
     since: float | None = None,
     until: float | None = None,
-) -> list[Numbers]: ...
+) -> Sights: ...
+def occultation(
+    what: Snapshot | Simulation | Run | _Path,
+    elevation: float | Sequence[float],
+    azimuth: float | Sequence[float] | None = None,
+    *,
+    length: float = 10.0,
+    width: float = 10.0,
+    track: float = 0.0,
+    tracks: int = 100,
+    samples: int = 64,
+    rays: int = 32,
+    section: str = "rectangle",
+    since: float | None = None,
+    until: float | None = None,
+) -> Occultations: ...
 
 def threads() -> int: ...
 def set_threads(count: int) -> None: ...
@@ -268,8 +297,11 @@ def from_arrays(
     masses: ArrayLike | None = None,
     spins: ArrayLike | None = None,
     *,
+    ids: ArrayLike | None = None,
     relax: bool = False,
     shear_offset: float = 0.0,
+    orbital_frequency: float | None = None,
+    orbits: float | None = None,
     **overrides: Any,
 ) -> Simulation: ...
 def start_from_arrays(
@@ -280,8 +312,11 @@ def start_from_arrays(
     masses: ArrayLike | None = None,
     spins: ArrayLike | None = None,
     *,
+    ids: ArrayLike | None = None,
     relax: bool = False,
     shear_offset: float = 0.0,
+    orbital_frequency: float | None = None,
+    orbits: float | None = None,
     **overrides: Any,
 ) -> Snapshot: ...
 def from_rebound(

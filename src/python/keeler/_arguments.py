@@ -107,3 +107,14 @@ def doubles(value, name):
         return np.asarray(array, dtype=float)
     except (TypeError, ValueError, OverflowError):
         raise UsageError(f"{name} has entries that are no numbers; give an array of numbers") from None
+
+
+def numbers(value, name, count):
+    """Converts so many positive numbers, which may be one array, to a tuple of floats. Raises UsageError."""
+    try:
+        found = tuple(float(number) for number in np.ravel(np.asarray(value, dtype=float)))
+    except (TypeError, ValueError, OverflowError):
+        found = ()
+    if len(found) != count or not all(0.0 < number < np.inf for number in found):
+        raise UsageError(f"{name} is {shown(value)}; give {'a positive number' if count == 1 else f'{count} positive numbers'}")
+    return found

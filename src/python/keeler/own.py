@@ -42,7 +42,10 @@ _forces, _laws, _columns = set(), set(), set()
 _kept = []  # compiled functions that Keeler calls
 
 
-def add_force(name, function, keys=None):
+_ARRAYS = ("positions", "velocities", "velocities_beyond_shear", "masses", "radii")
+
+
+def add_force(name, function, keys=None, reads=_ARRAYS):
     """Registers a force: scenes that are read from then on may have a table ``[NAME]`` with its ``keys``.
 
     ::
@@ -61,6 +64,9 @@ def add_force(name, function, keys=None):
                    const double *masses, const double *radii, const uint64_t *ids, const double *kick,
                    const double *keys, double *accelerations);
 
+    ``reads`` names the arrays of Kick that compiled code reads, ``("velocities_beyond_shear",)``: it is given null for the
+    others, which are then not computed (default: all).
+
     What it returns must follow from the arguments alone, and from no order of the particles, or a restart differs.
     ``keys`` is a dictionary of names with a default number or a ``Key``. Name and keys are in the scene, in checkpoints
     and in ``state_hash``; so is ``version``, a key of every force, for changes of the formula. A name that this
@@ -68,7 +74,9 @@ def add_force(name, function, keys=None):
     """
     address = compiled(function)
     if address:
-        _core.add_compiled_force(_text(name, "name"), address, _declared(keys))
+        if isinstance(reads, str):
+            raise UsageError(f"reads is {_arguments.shown(reads)}; give a list of names")
+        _core.add_compiled_force(_text(name, "name"), address, _declared(keys), [_text(one, "an array") for one in reads])
         _kept.append(function)
     else:
         _core.add_python_force(_text(name, "name"), _callable(function, "a force"), _declared(keys))

@@ -61,8 +61,8 @@ def overrides_of(tables):
 
 
 def source(scene):
-    """Returns (text, name) of a scene: a path, a text with a line break, a dictionary, or a snapshot's scene. Paths
-    in the scene are relative to the name; the name of a path is bytes, which need not be UTF-8."""
+    """Returns (text, name) of a scene: a path, the name of an example, a text with a line break, a dictionary, or a
+    snapshot's scene. Paths in the scene are relative to the name; the name of a path is bytes, which need not be UTF-8."""
     if isinstance(scene, dict):
         lines = _not_too_deep(lambda: [f"{_text(str(k), 'a key')} = {_toml(v, str(k))}" for k, v in scene.items()])
         return "\n".join(lines) + "\n", "scene"
@@ -74,6 +74,8 @@ def source(scene):
             "its tables"
         )
     path = _arguments.path(scene, "a scene")
+    if isinstance(scene, str) and not path.is_file() and _core.is_example(scene):
+        return _core.example_text(scene), scene
     try:
         return _arguments.content(path).decode("utf-8"), os.fsencode(path)
     except UnicodeDecodeError:

@@ -2,13 +2,13 @@
 
 import sys
 import tempfile
-import time
 from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 
 from . import _arguments, _core, scenes, snapshots, views
+from ._steps import Contacts, Edited, ProgressLine, ticks
 from .errors import UsageError
 from .snapshots import Snapshot
 
@@ -24,7 +24,7 @@ class Simulation:
         sim = keeler.Simulation("scene.toml", time={"end": 5.0})
         sim.run(5.0, every=0.5, callback=lambda sim: print(sim.orbits, sim.analyze()["toomre_q"]))
 
-    ``scene`` is the path of a scene file, its text, or a dictionary of its tables. ``start`` is the initial state: a
+    ``scene`` is the path of a scene file, the name of an example ("a-ring-wakes"), its text, or a dictionary of its tables. ``start`` is the initial state: a
     Snapshot, the file of one, or the present state of a Simulation. Other arguments override keys of the scene:
     ``time={"end": 5.0}``, or ``**{"time.end": 5.0}``. Raises UsageError for an invalid scene.
 
@@ -193,14 +193,14 @@ class Simulation:
         """
         core, scene = self._core, self._scene
         interval = scene.kick_interval
-        end = _ticks(scene.end if until is None else until, "until", scene)
+        end = ticks(scene.end if until is None else until, "until", scene)
         if end < core.tick:
             requested = scene.end if until is None else until
             raise UsageError(f"until is orbit {requested:g}, and the simulation is at orbit {self.orbits:g}; give a later time")
         if (every is None) != (callback is None):
             raise UsageError("every and callback go together: the callback is called at multiples of every")
-        between = max(interval, _ticks(every, "every", scene)) if every is not None else None
-        line = _ProgressLine(core.tick, end) if progress else None
+        between = max(interval, ticks(every, "every", scene)) if every is not None else None
+        line = ProgressLine(core.tick, end) if progress else None
         piece = between or end
         if line:
             piece = min(piece, max(interval, (end - core.tick) // 200 // interval * interval))
@@ -249,7 +249,7 @@ class Simulation:
             raise UsageError(f"minimum_speed is {_arguments.shown(minimum_speed)}; give a speed in m/s, 0 or more")
         self._core.record_contacts(speed)
         self._recording = True
-        contacts = _Contacts(self._core)
+        contacts = Contacts(self._core)
         try:
             yield contacts
         finally:
@@ -274,7 +274,7 @@ class Simulation:
         the box) or particles overlap; UsageError for arrays of another shape or with masked entries, or when the
         simulation has continued within the block. The energy of a change counts as part of the initial energy.
         """
-        state, begun = _Edited(self), (self._core.tick, self._changes)
+        state, begun = Edited(self), (self._core.tick, self._changes)
         yield state
         if begun != (self._core.tick, self._changes):
             raise UsageError("the simulation has moved on, or was changed, within edit(); the order of its rows may have changed")
@@ -307,7 +307,7 @@ class Simulation:
         and ``close()``. The page has the particles in 3-D, plots that grow, and buttons to pause, step and stop: a stop
         is a KeyboardInterrupt in ``run`` or ``step``. Nothing is computed for a page that is not looked at, and no result
         depends on it. ``port`` is that of the address (0: a free one). A second call returns the open page. Raises
-        RunError when there is none to be had."""
+        RunError when there is none to be had, and UsageError for another port than that of an open page."""
         return views.open_view(self._core, f"Keeler: {len(self)} particles", port, None)
 
     def widget(self, height=900, port=0):
@@ -325,76 +325,6 @@ class Simulation:
             file = Path(folder) / "state.h5"
             self.save(file)
             return _from_bytes, (file.read_bytes(),)
-
-
-class _Contacts:
-    def __init__(self, core):
-        self.core, self.last = core, None
-
-    def __call__(self):
-        if self.last is None:
-            return self.core.take_contacts()
-        rows, self.last = self.last, self.last[:0]
-        return rows
-
-    def end(self):
-        self.last = self.core.take_contacts()
-
-
-class _Edited:
-    """The writable copies of edit(); any other attribute is an error."""
-
-    __slots__ = ("positions", "velocities", "radii", "masses", "spins", "_ids")
-
-    def __init__(self, sim):
-        self.positions = np.array(sim.positions)
-        self.velocities = np.array(sim.velocities)
-        self.radii = np.array(sim.radii)
-        self.masses = np.array(sim.masses)
-        spins = sim.spins
-        self.spins = None if spins is None else np.array(spins)
-        self._ids = np.array(sim.ids)
-        self._ids.flags.writeable = False
-
-    @property
-    def ids(self):
-        return self._ids
-
-    @ids.setter
-    def ids(self, _):
-        raise UsageError("ids are given within edit(), and they never change; change the rows of the other arrays")
-
-    def arrays(self):
-        names = ("positions", "velocities", "radii", "masses", "spins")
-        return [_arguments.doubles(getattr(self, name), name) for name in names]
-
-
-def _ticks(orbits, name, scene):
-    try:
-        orbits = float(orbits)
-    except (TypeError, ValueError, OverflowError):
-        raise UsageError(f"{name} is {_arguments.shown(orbits)}; give a time in orbits") from None
-    count = orbits / (scene.tick * scene.kick_interval)
-    if not 0.0 <= count < 1e15:
-        raise UsageError(f"{name} is {orbits} orbits; give a time from 0 to {1e15 * scene.tick:g}")
-    return round(count) * scene.kick_interval
-
-
-class _ProgressLine:
-    def __init__(self, first, end):
-        self.first, self.end_tick, self.begin, self.shown = first, end, time.monotonic(), 0.0
-
-    def show(self, tick, orbits):
-        now = time.monotonic()
-        if now - self.shown < 0.2 and tick < self.end_tick:
-            return
-        self.shown = now
-        done = (tick - self.first) / (self.end_tick - self.first)
-        left = (now - self.begin) * (1.0 - done) / done if done > 0.0 else float("nan")
-        print(f"\r{100.0 * done:3.0f} %  orbit {orbits:.4g}  {left:.0f} s left ", end="", file=sys.stderr, flush=True)
-
-    def end(self):
-        print(file=sys.stderr)
 
 
 def load(file):

@@ -118,30 +118,59 @@ def tile(snapshot, nx, ny):
 
 
 def start_from_arrays(
-    scene, positions, radii, velocities=None, masses=None, spins=None, *, relax=False, shear_offset=0.0, **overrides
+    scene,
+    positions,
+    radii,
+    velocities=None,
+    masses=None,
+    spins=None,
+    *,
+    ids=None,
+    relax=False,
+    shear_offset=0.0,
+    orbital_frequency=None,
+    orbits=None,
+    **overrides,
 ):
     """Returns an initial state with given particles, as a Snapshot in the scene's box.
 
     positions (N, 3) m, velocities (N, 3) m/s or None (circular orbits), radii (N,) m or one number, masses (N,) kg or
     one number or None (from the scene's density), inertial spins (N, 3) rad/s if the scene has friction. Particle k
-    gets the id k. ``relax`` moves overlapping particles apart. ``shear_offset`` (m, from 0 to L_y) is that of the box, as
-    of a Snapshot. Warns (UserWarning) of a state unlike any ring:
+    gets the id k; with ``ids`` (N,), all different, the order is that of the ids. ``relax`` moves overlapping particles
+    apart. ``shear_offset`` (m, from 0 to L_y) is that of the box, as of a Snapshot.
+
+    So ``**numpy.load(file)`` of an npz file of ``keeler convert`` may be given: ``orbital_frequency`` (rad/s) and ``box``, as two
+    numbers, must then be those of the scene, and ``orbits`` is not used, since the simulation begins at orbit 0. Warns (UserWarning) of a state unlike any ring:
     velocities without the shear, tables in km. Raises UsageError, naming the row, for invalid particles and for
     masked entries; InvariantError for overlaps.
     """
-    if "ids" in overrides:
-        raise UsageError("ids cannot be given: particle k gets the id k; leave them out, or sort the arrays by them")
     text, scene_name = scenes.source(scene)
     given = {"positions": positions, "velocities": velocities, "radii": radii, "masses": masses, "spins": spins}
     arrays = [_arguments.doubles(array, name) for name, array in given.items()]
+    if ids is not None:
+        arrays = _sorted_by(ids, arrays)
+    box = (0.0, 0.0)
+    if not isinstance(overrides.get("box", {}), dict):  # numbers, and no table of the scene
+        box = _arguments.numbers(overrides.pop("box"), "box", 2)
+    frequency = 0.0 if orbital_frequency is None else _arguments.numbers(orbital_frequency, "orbital_frequency", 1)[0]
     try:
         offset = float(shear_offset)
     except (TypeError, ValueError, OverflowError):
         raise UsageError(f"shear_offset is {_arguments.shown(shear_offset)}; give a length in m") from None
-    make = functools.partial(_core.from_arrays, text, scene_name, scenes.overrides_of(overrides), *arrays, relax, offset)
+    make = functools.partial(_core.from_arrays, text, scene_name, scenes.overrides_of(overrides), *arrays, relax, offset, box, frequency)
     start = scenes.as_arguments(make)
     warn(start.start_doubts())
     return Snapshot(start, "the arrays")
+
+
+def _sorted_by(ids, arrays):
+    """Returns arrays of particles with their rows in the order of the ids; numbers and None unchanged."""
+    ids = np.asarray(ids)
+    count = len(arrays[0]) if arrays[0].ndim else 0
+    if ids.shape != (count,) or ids.dtype.kind not in "iu" or len(np.unique(ids)) != count:
+        raise UsageError(f"ids are {count} whole numbers, one per particle, and all different; correct them, or leave them out")
+    order = np.argsort(ids)
+    return [array if array is None or array.ndim == 0 else array[order] if len(array) == count else array for array in arrays]
 
 
 def warn(lines):

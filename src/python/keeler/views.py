@@ -2,8 +2,10 @@
 
 import html
 import weakref
+from urllib.parse import urlsplit
 
 from . import scenes
+from .errors import UsageError
 
 _open = weakref.WeakSet()  # the simulations' compiled parts with a page
 
@@ -50,7 +52,11 @@ def open_view(core, title, port, height):
     port = scenes.whole_number(port, "port", 0, 65535)
     if height is not None:
         height = scenes.whole_number(height, "height", 100, 10000)
-    view = View(core, core.open_view(title, port), height)
+    address = core.open_view(title, port)
+    open_port = urlsplit(address).port
+    if port not in (0, open_port):
+        raise UsageError(f"the page of this simulation is open at the port {open_port}, not {port}; close() it first, or leave port out")
+    view = View(core, address, height)
     _open.add(core)
     return view
 

@@ -39,6 +39,14 @@ TEST_CASE("an analysis is the mean over the snapshots") {
   CHECK(mean.optical_depth == doctest::Approx(6000 * pi / box.area()).epsilon(1e-12));
   CHECK(mean.toomre_q == doctest::Approx(0.5 * (toomre_q(patches[0]) + toomre_q(patches[1]))).epsilon(1e-12));
   CHECK(mean.translational_viscosity_m2_s == doctest::Approx(5.0 / 1.5 * 1.3175e-4).epsilon(1e-3));
+  // a common drift is no random motion
+  std::vector<Patch> drifting = patches;
+  for (Patch& patch : drifting)
+    for (Vec3& velocity : patch.velocities)
+      velocity += Vec3(-30.0, 9.0, 4.0);
+  CHECK(analyze(drifting).random_energy_m2_s2 == doctest::Approx(mean.random_energy_m2_s2).epsilon(1e-9));
+  CHECK(analyze(drifting).translational_viscosity_m2_s ==
+        doctest::Approx(mean.translational_viscosity_m2_s).epsilon(1e-9));
   REQUIRE(mean.wake_pitch_degrees);
   CHECK(std::fabs(*mean.wake_pitch_degrees - wave.pitch * 180.0 / pi) < 2.0);
   REQUIRE(mean.wake_spacing_m);

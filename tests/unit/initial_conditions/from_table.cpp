@@ -146,4 +146,24 @@ TEST_CASE("particles that overlap are counted, and moved apart with their random
   CHECK(relax(apart).farthest == 0.0);
 }
 
+TEST_CASE("a message about overlaps says what may be wrong with the table") {
+  const auto patch_of = [](std::vector<Vec3> positions) {
+    io::ParticleTable table;
+    table.positions = std::move(positions);
+    table.radii.assign(table.positions.size(), 1.0);
+    scene::TableScene of = table_scene();
+    of.density = 900.0;
+    return patch_from_table(table, of);
+  };
+  CHECK(overlap_hint(patch_of({{0.0, 0.0, 0.0}, {1.5, 0.0, 0.0}, {20.0, 10.0, 0.0}})).empty());
+  const std::string across = overlap_hint(patch_of({{-29.9, 5.0, 0.0}, {29.9, 5.0, 0.0}, {0.0, -15.0, 0.0}}));
+  CHECK(across.find("; that pair meets across an edge of the box: is the shear offset right") == 0);
+  const std::string small = overlap_hint(patch_of({{-0.03, 0.0, 0.0}, {0.02, 0.01, 0.0}, {0.01, -0.02, 0.0}}));
+  CHECK(small.find("; all are within 0.05 m x 0.03 m of a box of 60 m x 40 m") == 0);
+  std::vector<Vec3> heap; // so many that the table is refused at once
+  for (int k = 0; k < 2000; ++k)
+    heap.emplace_back(1e-5 * k, 0.0, 0.0);
+  CHECK_THROWS_WITH_AS(patch_of(heap), doctest::Contains("are these in km?"), InvariantError);
+}
+
 } // namespace from_table_test

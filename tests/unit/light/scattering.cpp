@@ -94,6 +94,49 @@ TEST_CASE("drawn directions and weights are those of the brightness") {
   }
 }
 
+TEST_CASE("a surface that is given as a function is the law of that function") {
+  const SharedLaw lambert = surface_law([](double in, double, double) { return 3.0 * in; }, 0.6);
+  const SharedLaw seeliger = surface_law([](double in, double out, double) { return in / (in + out); }, 0.6);
+  const SharedLaw named[] = {law_named("lambert", 0.6), law_named("lommel_seeliger", 0.6)};
+  const Vec3 normal = at(0.9, 1.0);
+  CHECK(!lambert->of_particle());
+  for (const double cosine : {0.95, 0.5, 0.1})
+    for (const double azimuth : {0.0, 1.3, 3.0}) {
+      const Vec3 to = at(0.4, 0.2), from = at(cosine, azimuth);
+      CAPTURE(cosine);
+      CAPTURE(azimuth);
+      CHECK(lambert->brightness(normal, to, from) ==
+            doctest::Approx(named[0]->brightness(normal, to, from)).epsilon(1e-9).scale(1e-9));
+      CHECK(seeliger->brightness(normal, to, from) ==
+            doctest::Approx(named[1]->brightness(normal, to, from)).epsilon(0.004));
+    }
+  // and one with a phase angle: what is drawn is what is shown, and a sphere scatters the fraction that is asked for
+  const SharedLaw own = surface_law([](double in, double, double phase) { return in * (1.0 + std::cos(phase)); }, 0.7);
+  constexpr int steps = 300, draws = 100000;
+  const Vec3 to = at(0.4, 0.2), axis = at(-0.3, 2.0);
+  double exact[2] = {0, 0}, drawn[2] = {0, 0}, sphere = 0.0;
+  for (int i = 0; i < steps; ++i)
+    for (int j = 0; j < 2 * steps; ++j) {
+      const Vec3 from = at(-1.0 + 2.0 * (i + 0.5) / steps, pi * (j + 0.5) / steps);
+      const double part = own->brightness(normal, to, from) / pi * (2.0 / steps) * (pi / steps);
+      exact[0] += part, exact[1] += part * from.dot(axis);
+    }
+  RandomStream random(3, RandomPurpose::sample, 0);
+  for (int k = 0; k < draws; ++k) {
+    const Scattering one = own->scatter(normal, to, random);
+    drawn[0] += one.weight / draws, drawn[1] += one.weight * one.from.dot(axis) / draws;
+  }
+  for (int moment = 0; moment < 2; ++moment)
+    CHECK(drawn[moment] == doctest::Approx(exact[moment]).epsilon(0.005).scale(0.5));
+  for (int k = 0; k < 200; ++k) {
+    const double alpha = pi * (k + 0.5) / 200;
+    sphere += 2.0 * disc_brightness(*own, alpha) * std::sin(alpha) * pi / 200;
+  }
+  CHECK(sphere == doctest::Approx(0.7).epsilon(0.004));
+  CHECK_THROWS_AS(surface_law([](double, double, double) { return -1.0; }, 0.5), UsageError);
+  CHECK_THROWS_AS(surface_law([](double, double, double) { return 0.0; }, 0.5), UsageError);
+}
+
 TEST_CASE("surface laws are reciprocal") {
   for (const char* const name : {"lambert", "lommel_seeliger"}) {
     const SharedLaw law = law_named(name, 0.5);

@@ -96,6 +96,21 @@ TEST_CASE("a ray meets what it meets among all spheres and images in space") {
     }
 }
 
+TEST_CASE("Embree's own queries count the rays that are blocked, where no ray crosses a face") {
+  const Patch patch = test::dense_layer(24.0, 17.0, 6.0, 12, 3, 4.3);
+  const Tracer tracer(patch);
+  RandomStream random(5, RandomPurpose::sample, 0);
+  std::vector<Vec3> origins;
+  std::size_t blocked = 0;
+  for (int k = 0; k < 1003; ++k) { // no multiple of 16
+    origins.emplace_back((random.uniform() - 0.5) * 24.0, (random.uniform() - 0.5) * 17.0, tracer.cell().top());
+    blocked += tracer.blocked(origins.back(), -Vec3::UnitZ()) ? 1 : 0;
+  }
+  CHECK(blocked > 20);
+  CHECK(tracer.count_blocked_in_cell(origins, -Vec3::UnitZ(), false) == blocked);
+  CHECK(tracer.count_blocked_in_cell(origins, -Vec3::UnitZ(), true) == blocked);
+}
+
 TEST_CASE("single precision errs only for rays that graze a sphere, within a bound by the size of the cell") {
   // A cell of 20 km with spheres of 1 m, and long rays that pass their limbs at distances about the rounding.
   const double side = 20000.0;

@@ -166,4 +166,41 @@ TEST_CASE("gravity's energy and stress are in the rows that are due, and a scene
   CHECK_FALSE(t.balance);
 }
 
+TEST_CASE("a common drift in a head wind is no viscosity, and a ring without self-gravity has a total one") {
+  const TemporaryFolder work;
+  RunRequests requests;
+  RunOptions options;
+  options.folder = work / "run";
+  const Scene scene = parse_scene(R"(
+planet = { orbital_frequency = 1.9565e-4 }
+box.size = [30.0, 25.0]
+particles = { count = 100, density = 500.0, sizes = { law = "equal", radius = 1.0 } }
+gas = { stopping_time = 0.5, head_wind = 1e-3 }
+time = { step = 5e-3, end = 8.0 }
+output = { series_every = 0.05 }
+)",
+                                  "test scene");
+  start_run(scene, options, requests);
+  const io::SeriesTable series = io::read_series(work / "run" / "series.csv");
+  const std::vector<double>&orbits = series.of("time_orbits"), &random = series.of("translational_viscosity_m2_s"),
+        &drift = series.of("drift_viscosity_m2_s");
+  double of_random = 0.0, of_drift = 0.0, rows = 0.0;
+  for (std::size_t k = 0; k < orbits.size(); ++k)
+    if (orbits[k] >= 4.0)
+      of_random += random[k], of_drift += drift[k], rows += 1.0;
+  of_random /= rows, of_drift /= rows;
+  // the terminal velocity in the head wind w: c_y = −w/(1 + κ²τ²), c_x = 2τ c_y
+  const double tau = two_pi * 0.5, c_y = -1e-3 / (1.0 + tau * tau);
+  CHECK(of_drift == doctest::Approx(2.0 * tau * c_y * c_y / (1.5 * 1.9565e-4)).epsilon(0.02));
+  CHECK(of_drift > 5.0 * std::fabs(of_random));
+  const double mass = 100 * 4.0 / 3.0 * pi * 500.0;
+  const Transport t = transport(series, {mass, 1.9565e-4, 1.5, true, false}, {.since = 4.0, .until = {}});
+  CAPTURE(of_random);
+  CHECK(std::fabs(t.translational.value - of_random) < 0.1 * std::fabs(of_random) + 0.003 * of_drift);
+  REQUIRE(t.total);
+  CHECK(t.gravitational->value == 0.0);
+  CHECK(t.total->value == doctest::Approx(t.translational.value + t.collisional.value).epsilon(1e-9));
+  CHECK_FALSE(t.balance); // the gas takes energy
+}
+
 } // namespace transport_test
