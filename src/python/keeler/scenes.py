@@ -60,6 +60,11 @@ def overrides_of(tables):
     return _not_too_deep(lambda: _overrides(tables, ""))
 
 
+def _is_no_file(path, name):
+    """Returns whether a text is the name of an example, or of nothing else."""
+    return (_core.is_example(name) and not path.is_file()) or (name.replace("-", "").isalnum() and not path.exists())
+
+
 def source(scene):
     """Returns (text, name) of a scene: a path, the name of an example, a text with a line break, a dictionary, or a
     snapshot's scene. Paths in the scene are relative to the name; the name of a path is bytes, which need not be UTF-8."""
@@ -74,7 +79,7 @@ def source(scene):
             "its tables"
         )
     path = _arguments.path(scene, "a scene")
-    if isinstance(scene, str) and not path.is_file() and _core.is_example(scene):
+    if isinstance(scene, str) and _is_no_file(path, scene):
         return _core.example_text(scene), scene
     try:
         return _arguments.content(path).decode("utf-8"), os.fsencode(path)

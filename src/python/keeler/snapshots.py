@@ -6,6 +6,8 @@ import tempfile
 import warnings
 from pathlib import Path
 
+import numpy as np
+
 from . import _arguments, _core, numbers, scenes
 from .errors import UsageError
 

@@ -161,8 +161,8 @@ TEST_CASE("a message about overlaps says what may be wrong with the table") {
   const std::string small = overlap_hint(patch_of({{-0.03, 0.0, 0.0}, {0.02, 0.01, 0.0}, {0.01, -0.02, 0.0}}));
   CHECK(small.find("; all are within 0.05 m x 0.03 m of a box of 60 m x 40 m") == 0);
   std::vector<Vec3> heap; // so many that the table is refused at once
-  for (int k = 0; k < 2000; ++k)
-    heap.emplace_back(1e-5 * k, 0.0, 0.0);
+  for (int k = 0; k < 10000; ++k)
+    heap.emplace_back(1e-6 * k, 0.0, 0.0);
   CHECK_THROWS_WITH_AS(patch_of(heap), doctest::Contains("are these in km?"), InvariantError);
 }
 

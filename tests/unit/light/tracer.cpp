@@ -27,19 +27,25 @@ struct Met {
 // Brute force in double precision: all spheres and all images that the ray can reach within the layer.
 Met met_by_all(const Patch& patch, const Vec3& origin, const Vec3& d, int most) {
   Met met;
-  for (std::size_t k = 0; k < patch.size(); ++k)
-    for (int nx = -most; nx <= most; ++nx)
-      for (int ny = -most; ny <= most; ++ny) {
-        const Vec3 to = patch.positions[k] + patch.box.displacement({nx, ny}, patch.offset) - origin;
-        const double closest = to.dot(d), across = (to - closest * d).norm(), r = patch.radii[k];
-        if (closest > -r)
-          met.nearest = std::min(met.nearest, std::fabs(across - r));
+  for (int nx = -most; nx <= most; ++nx)
+    for (int ny = -most; ny <= most; ++ny) {
+      const Vec3 image = patch.box.displacement({nx, ny}, patch.offset) - origin;
+      for (std::size_t k = 0; k < patch.size(); ++k) {
+        const Vec3& p = patch.positions[k];
+        const double x = p.x() + image.x(), y = p.y() + image.y(), z = p.z() + image.z(), r = patch.radii[k];
+        const double closest = x * d.x() + y * d.y() + z * d.z();
+        if (closest <= -r)
+          continue;
+        const double u = x - closest * d.x(), v = y - closest * d.y(), w = z - closest * d.z();
+        const double across = std::sqrt(u * u + v * v + w * w);
+        met.nearest = std::min(met.nearest, std::fabs(across - r));
         if (across >= r)
           continue;
         const double path = closest - std::sqrt(r * r - across * across);
         if (path >= 0.0 && path < met.path)
           met.path = path, met.particle = k;
       }
+    }
   return met;
 }
 

@@ -175,7 +175,7 @@ TEST_CASE("a common drift in a head wind is no viscosity, and a ring without sel
 planet = { orbital_frequency = 1.9565e-4 }
 box.size = [30.0, 25.0]
 particles = { count = 100, density = 500.0, sizes = { law = "equal", radius = 1.0 } }
-gas = { stopping_time = 0.5, head_wind = 1e-3 }
+gas = { stopping_time = 0.5, head_wind = 2e-3 }
 time = { step = 5e-3, end = 8.0 }
 output = { series_every = 0.05 }
 )",
@@ -190,7 +190,7 @@ output = { series_every = 0.05 }
       of_random += random[k], of_drift += drift[k], rows += 1.0;
   of_random /= rows, of_drift /= rows;
   // the terminal velocity in the head wind w: c_y = −w/(1 + κ²τ²), c_x = 2τ c_y
-  const double tau = two_pi * 0.5, c_y = -1e-3 / (1.0 + tau * tau);
+  const double tau = two_pi * 0.5, c_y = -2e-3 / (1.0 + tau * tau);
   CHECK(of_drift == doctest::Approx(2.0 * tau * c_y * c_y / (1.5 * 1.9565e-4)).epsilon(0.02));
   CHECK(of_drift > 5.0 * std::fabs(of_random));
   const double mass = 100 * 4.0 / 3.0 * pi * 500.0;
