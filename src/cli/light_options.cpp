@@ -31,7 +31,7 @@ const std::vector<NamedSights>& named_sights() {
       // 119, 623) have phase curves from 0 to 6 degrees, after Salo & French (2010, Icarus 210, 785)
       {"hubble-10", {10.0}, {0.3, 0.5, 1.0, 2.0, 4.0, 6.0}},
       {"hubble-23", {23.0}, {0.02, 0.1, 0.3, 0.5, 1.0, 2.0, 4.0, 6.0}},
-      // the range of elevations of those images (French et al. 2005, BAAS 37, 671: 3 < |B| < 26), at the largest phase
+      // the range of elevations of these images (French et al. 2005, BAAS 37, 671: 3 < |B| < 26), at the largest phase
       {"hubble-tilt", {3.0, 4.5, 10.0, 15.0, 20.0, 23.0, 26.0}, {6.0}},
   };
   return all;

@@ -32,7 +32,7 @@ struct LitSight {
   light::Sight sight() const;
 };
 
-/// A grid of sights, or those of a file, or named ones.
+/// A grid of sights, or the sights of a file or of a name.
 struct SightGrid {
   std::vector<double> elevations, azimuths, sun_elevations, phases; ///< degrees
   std::string observations, geometry;

@@ -64,7 +64,7 @@ Rates rates_of(const io::SeriesTable& series, const std::vector<std::size_t>& ro
     const double flux = 1.0 / (scale.mass * s * time);
     rates.time.push_back(0.5 * (orbits[a] + orbits[b]));
     rates.translational.push_back((translational[b] - translational[a]) * flux);
-    if (drift) // which changes slowly, or as a free epicycle, whose mean is that of its values
+    if (drift) // it changes slowly, or is a free epicycle, and then the rows average over it
       rates.translational.back() -= 0.5 * ((*drift)[a] + (*drift)[b]);
     rates.collisional.push_back((collisional[b] - collisional[a]) * flux);
     double total = rates.translational.back() + rates.collisional.back();
