@@ -41,9 +41,10 @@ std::vector<double> bounds_of(std::span<const std::uint64_t> histogram, std::spa
   return bounds;
 }
 
+// Returns a bin for any number: later checks reject particles without a position.
 std::size_t bin_of(double position, double size, std::size_t bins) {
   const double bin = (position / size + 0.5) * static_cast<double>(bins);
-  return static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(bins) - 0.5));
+  return bin >= 0.0 ? std::min(static_cast<std::size_t>(bin), bins - 1) : 0;
 }
 
 std::size_t interval_of(double position, std::span<const double> bounds) {

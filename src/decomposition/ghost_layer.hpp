@@ -75,7 +75,8 @@ struct GhostLayer {
   Point point(const BoxPoint& at) const { return {at.x * (box.size_x / turn), at.y * (box.size_y / turn)}; }
   BoxPoint box_point(const Point& in_cell) const {
     const auto fraction = [](double position, double size) {
-      return static_cast<std::int32_t>(std::clamp(std::nearbyint(position / size * turn), -0.5 * turn, 0.5 * turn - 1));
+      const double rounded = std::nearbyint(position / size * turn); // may be no number
+      return rounded < 0.5 * turn ? static_cast<std::int32_t>(std::max(rounded, -0.5 * turn)) : INT32_MAX;
     };
     return {fraction(in_cell.x, box.size_x), fraction(in_cell.y, box.size_y)};
   }
