@@ -1,15 +1,14 @@
-# keeler_assets(FOLDER FILE...): writes assets.cpp of a folder with an assets.hpp: the files as arrays of bytes in the
-# program, so that nothing is looked for when it runs.
+# keeler_assets(FOLDER FILE...): writes assets.cpp of a folder with an assets.hpp: the texts of the files in the program, so
+# that nothing is looked for when it runs. As numbers of single bytes they would take several times as long to compile.
 function(keeler_assets asset_folder)
-  set(asset_bytes "")
+  set(asset_texts "")
   set(asset_rows "")
   foreach(asset IN LISTS ARGN)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${asset}")
     get_filename_component(file "${asset}" NAME)
     string(MAKE_C_IDENTIFIER "${file}" name)
-    file(READ "${asset}" hex HEX)
-    string(REGEX REPLACE "(..)" "0x\\1," bytes "${hex}")
-    string(APPEND asset_bytes "constexpr unsigned char ${name}[] = {${bytes}};\n")
+    file(READ "${asset}" content)
+    string(APPEND asset_texts "constexpr char ${name}[] = R\"keeler_asset(${content})keeler_asset\";\n")
     string(APPEND asset_rows "    {\"${file}\", text(${name})},\n")
   endforeach()
   configure_file("${PROJECT_SOURCE_DIR}/cmake/assets.cpp.in" assets.cpp @ONLY)

@@ -18,6 +18,9 @@
 namespace keeler::cli {
 namespace {
 
+constexpr const char* the_whole =
+    "the whole program, build/default/keeler, is made by \"cmake --build build/default --target keeler\"";
+
 std::vector<NumberTable> number_tables() {
   std::vector<NumberTable> tables = {
       {"keeler analyze: a snapshot, or the steady part of a run", runs::measured_quantities()},
@@ -101,6 +104,18 @@ void examples_of(CLI::App& command, const std::vector<std::string>& lines) {
 ExitCode print_help(const CLI::App& command) {
   print("{}", command.get_formatter()->make_help(&command, full_name(command), CLI::AppFormatMode::Normal));
   return ExitCode::done;
+}
+
+void leave_out(CLI::App& program, Action& action, const char* name) {
+  CLI::App& command = *program.add_subcommand(name, "not in the demo's program");
+  command.footer(the_whole);
+  command.set_help_flag(); // --help is a word as any other
+  command.prefix_command();
+  command.callback([name, &action] {
+    action = [name]() -> ExitCode {
+      throw UsageError(fmt::format("'keeler {}' is not in the demo's program; {}", name, the_whole));
+    };
+  });
 }
 
 void add_help(CLI::App& program, Action& action) {

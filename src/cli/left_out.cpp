@@ -1,29 +1,8 @@
 // The demo's program (scripts/demo) has no command but those that the demo runs. The others say here how to build them.
-#include "command.hpp"
+#include "commands.hpp"
 #include "number_tables.hpp"
 
-#include <fmt/format.h>
-
 namespace keeler::cli {
-namespace {
-
-constexpr const char* the_whole =
-    "the whole program, build/default/keeler, is made by \"cmake --build build/default --target keeler\"";
-
-void leave_out(CLI::App& program, Action& action, const char* name) {
-  CLI::App& command = *program.add_subcommand(name, "not in the demo's program");
-  command.footer(the_whole);
-  command.set_help_flag(); // --help is a word as any other
-  command.prefix_command();
-  command.callback([name, &action] {
-    action = [name]() -> ExitCode {
-      throw UsageError(fmt::format("'keeler {}' is not in the demo's program; {}", name, the_whole));
-    };
-  });
-}
-
-} // namespace
-
 std::vector<NumberTable> further_number_tables() {
   return {};
 }

@@ -66,12 +66,12 @@ constexpr Line lines[] = {
 
 // Returns the finite values of a column, or its rates between rows if it accumulates.
 std::vector<double> values_of(const io::SeriesTable& series, const Line& line) {
-  const std::vector<double>& times = series.of("time_orbits");
+  const std::vector<double>& orbits = series.of("time_orbits");
   const std::vector<double>& column = series.of(line.column);
   std::vector<double> values;
   const bool counts = line.counts();
   for (std::size_t i = counts ? 1 : 0; i < column.size(); ++i) {
-    const double value = counts ? (column[i] - column[i - 1]) / (times[i] - times[i - 1]) : column[i];
+    const double value = counts ? (column[i] - column[i - 1]) / (orbits[i] - orbits[i - 1]) : column[i];
     if (std::isfinite(value))
       values.push_back(value);
   }

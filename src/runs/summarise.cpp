@@ -84,7 +84,7 @@ std::vector<std::string> notes(From s) {
   return all;
 }
 
-std::vector<SummaryRow> state_rows() {
+std::vector<SummaryRow> end_rows() {
   return {
       {yes_or_no("finished", "finished", "true at the end, false after a stop"),
        [](From s) { return s.result.finished; }},
@@ -236,8 +236,8 @@ std::vector<SummaryRow> cost_rows() {
        [](From s) { return s.cost.output.series / giga_particle_steps(s); }}};
 }
 
-std::vector<SummaryRow> all_rows() {
-  return joined(joined(state_rows(), energy_rows()), cost_rows());
+std::vector<SummaryRow> summary_rows() {
+  return joined(joined(end_rows(), energy_rows()), cost_rows());
 }
 
 } // namespace
@@ -274,7 +274,7 @@ Record summarise(Simulation& simulation, const Scene& scene, const std::optional
   const SummarySource source{simulation,          scene, transport, result, cost, simulation.largest_overlap(),
                              simulation.balance()};
   const simulation::SimulationState& state = simulation.state();
-  Record record{entries_of(all_rows(), source),
+  Record record{entries_of(summary_rows(), source),
                 units_of(state.particles, state.box.area(), scene.planet.orbital_frequency, simulation.ranks())};
   for (const scene::ForceSettings& force : scene.external_forces)
     record.entries.push_back({{fmt::format("split.{}", force.entry->table), unit::seconds},
@@ -285,7 +285,7 @@ Record summarise(Simulation& simulation, const Scene& scene, const std::optional
 }
 
 std::vector<Quantity> summary_quantities() {
-  return quantities_of(all_rows());
+  return quantities_of(summary_rows());
 }
 
 Record read_summary(const std::filesystem::path& folder) {

@@ -63,8 +63,7 @@ cp "$work/small.toml" "$work/scene.toml"
   -o "$work/works" >/dev/null 2>&1 &
 process=$!
 until [ "$(newest_checkpoint "$work/works" 2>/dev/null)" ] || ! kill -0 $process; do sleep 0.05; done
-sleep 2 # the time left is known then
-accepts "at work" info "$work/works" --json
+until { accepts "at work" info "$work/works" --json; grep -q '"remaining_s": [0-9]' "$work/out"; } || ! kill -0 $process; do sleep 0.1; done
 number 'info["state"], info["remaining_s"] > 0, info["wall_s"] >= 0' "('running', True, True)"
 kill -KILL "$process"
 wait "$process" 2>/dev/null

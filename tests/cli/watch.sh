@@ -27,8 +27,7 @@ grep -q $'\033' "$work/out" && fail "a pipe got a terminal's codes"
 "$keeler" run "$work/scene.toml" --set time.end=1e5 --set output.snapshot_every=0 -o "$work/works" >/dev/null 2>&1 &
 process=$!
 until [ -s "$work/works/series.csv" ] && [ "$(wc -l <"$work/works/series.csv")" -gt 3 ]; do sleep 0.05; done
-sleep 2 # the time left is known then
-accepts "at work" watch "$work/works"
+until { accepts "at work" watch "$work/works"; grep -q " left" "$work/out"; } || ! kill -0 "$process"; do sleep 0.1; done
 prints "at work" "running, "
 prints "at work" " left"
 prints "at work" " of 100000"
