@@ -88,8 +88,9 @@ def git(*words):
 
 
 def code_of(part):
-    """A digest of the committed folders that the part rests on: the same whatever the history."""
-    return digest("".join(git("rev-parse", *(f"HEAD:{path}" for path in part.paths()))))
+    """A digest of the committed files that the part rests on: the same whatever the history. Pages are no code."""
+    rows = git("ls-tree", "-r", "-z", "HEAD", "--", *part.paths()).split("\0")
+    return digest("\n".join(row for row in rows if not row.endswith(".md")))
 
 
 def why_stale(part, manifest):
@@ -101,7 +102,7 @@ def why_stale(part, manifest):
     if entry["code"] == code_of(part):
         return None
     try:
-        newer = git("log", "--format=%h %s", f"{entry['commit']}..HEAD", "--", *part.paths()).splitlines()
+        newer = git("log", "--format=%h %s", f"{entry['commit']}..HEAD", "--", *part.paths(), ":!*.md").splitlines()
     except subprocess.CalledProcessError:
         newer = []  # that commit is of another history
     return f"{len(newer)} commits since {entry['commit'][:9]}, the last one: {newer[0]}" if newer else f"the code differs from that of {entry['commit'][:9]}"

@@ -126,7 +126,7 @@ def build(parts):
 
 def remake(chosen):
     for part in chosen:
-        if changed := git("status", "--porcelain", "--", *part.paths()).strip():
+        if changed := git("status", "--porcelain", "--", *part.paths(), ":!*.md").strip():
             raise Stop(f"{part.name} rests on files that are not committed, so no commit would make it:\n{changed}")
     build(chosen)
     progress, failed = Progress(sum(part.seconds for part in chosen)), []
@@ -257,6 +257,8 @@ def main():
 
 
 if __name__ == "__main__":
+    for stop_signal in (signal.SIGINT, signal.SIGTERM):  # which a shell may have set to be ignored
+        signal.signal(stop_signal, signal.default_int_handler)
     try:
         sys.exit(main())
     except Stop as stop:
