@@ -3,7 +3,7 @@
 
     PYTHONPATH=build/default/python scripts/python_force_cost.py [PARTICLES]
 
-The same drag is [gas], a function of Python and a compiled one; a ring of 1 m spheres at optical depth 0.3, without
+The same drag is [gas], a function of Python, a compiled one, and one that says which array it reads; a ring of 1 m spheres at optical depth 0.3, without
 self-gravity and with fft. Each number is the difference of runs of 6 and 2 steps. Needs valgrind and cc.
 """
 
@@ -36,9 +36,10 @@ def steps(folder, gravity, kind, count):
         np.multiply(kick.velocities_beyond_shear, rate, out=accelerations)
 
     keeler.set_threads(1)
-    if kind in ("python", "compiled"):
+    if kind in ("python", "compiled", "reads"):
         function = drag if kind == "python" else ctypes.CDLL(f"{folder}/drag.so").drag
-        keeler.add_force("own", function, {"rate": keeler.Key(1e-4, "1/s")}, reads=["velocities_beyond_shear"])
+        arrays = {"reads": ["velocities_beyond_shear"]} if kind == "reads" else {}
+        keeler.add_force("own", function, {"rate": keeler.Key(1e-4, "1/s")}, **arrays)
     tables = {"none": {}, "[gas]": {"gas": {"stopping_time": 0.2}}}.get(kind, {"own": {}})
     if gravity != "no":
         tables["gravity"] = {"solver": gravity, "kick_every": 1}
@@ -67,7 +68,7 @@ def main(particles):
         Path(folder, "scene.toml").write_text(sim.scene, encoding="utf-8")
         print(f"{'self-gravity':14} {'force':10} instructions per particle and step")
         for gravity in ("no", "fft"):
-            for kind in ("none", "[gas]", "python", "compiled"):
+            for kind in ("none", "[gas]", "python", "compiled", "reads"):
                 more, fewer = (instructions(folder, gravity, kind, count) for count in (6, 2))
                 print(f"{gravity:14} {kind:10} {(more - fewer) / 4 / particles:.0f}", flush=True)
 
