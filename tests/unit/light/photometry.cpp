@@ -143,8 +143,8 @@ TEST_CASE("a dense layer is reciprocal") {
     const SharedLaw law = law_named(name, 0.9);
     const Bearing a{50.0 * degree, 0.4}, b{12.0 * degree, 2.1}, c{-30.0 * degree, 1.0};
     for (const Bearing& other : {b, c}) {
-      const Photometry there = one_sight(patch, {a, other}, law, 5 * round_rays),
-                       back = one_sight(patch, {other, a}, law, 5 * round_rays);
+      const Photometry there = one_sight(patch, {a, other}, law, 8 * round_rays),
+                       back = one_sight(patch, {other, a}, law, 8 * round_rays);
       const double mu_a = std::fabs(std::sin(a.elevation)), mu_b = std::fabs(std::sin(other.elevation));
       const double one = there.reflectance.value * mu_a, two = back.reflectance.value * mu_b;
       CAPTURE(name);
