@@ -143,7 +143,21 @@ private:
 
   template<class Row, class Exchange>
   std::vector<std::vector<Row>> exchange_by(const Exchange& exchange_bytes,
-                                            const std::vector<std::vector<Row>>& rows) const;
+                                            const std::vector<std::vector<Row>>& rows) const {
+    static_assert(std::is_trivially_destructible_v<Row>); // plain numbers; Eigen's vectors are not trivially copyable
+    assert(rows.size() == size_);
+    std::vector<std::vector<Row>> received(rows.size());
+    received[rank()] = rows[rank()];
+    std::vector<std::span<const std::byte>> sent;
+    for (const std::vector<Row>& to_rank : rows)
+      sent.push_back(std::as_bytes(std::span(to_rank)));
+    exchange_bytes(sent, [&](std::size_t rank, std::size_t size) {
+      assert(size % sizeof(Row) == 0);
+      received[rank].resize(size / sizeof(Row));
+      return reinterpret_cast<std::byte*>(received[rank].data());
+    });
+    return received;
+  }
   /// Sends sent[r] to every other rank r.
   void exchange(const std::vector<std::span<const std::byte>>& sent, const Allocate& allocate) const;
   /// Sends sent[r] to every partner r. Throws UsageError if one of them gets 1 GiB or more.
@@ -195,24 +209,6 @@ template<class Row> std::vector<Row> Communicator::gather_on_all(std::span<const
     return reinterpret_cast<std::byte*>(all.data());
   });
   return all;
-}
-
-template<class Row, class Exchange>
-std::vector<std::vector<Row>> Communicator::exchange_by(const Exchange& exchange_bytes,
-                                                        const std::vector<std::vector<Row>>& rows) const {
-  static_assert(std::is_trivially_destructible_v<Row>); // plain numbers; Eigen's vectors are not trivially copyable
-  assert(rows.size() == size_);
-  std::vector<std::vector<Row>> received(rows.size());
-  received[rank()] = rows[rank()];
-  std::vector<std::span<const std::byte>> sent;
-  for (const std::vector<Row>& to_rank : rows)
-    sent.push_back(std::as_bytes(std::span(to_rank)));
-  exchange_bytes(sent, [&](std::size_t rank, std::size_t size) {
-    assert(size % sizeof(Row) == 0);
-    received[rank].resize(size / sizeof(Row));
-    return reinterpret_cast<std::byte*>(received[rank].data());
-  });
-  return received;
 }
 
 template<class Row>

@@ -116,8 +116,8 @@ public:
   /// contact.
   Patch patch_at_break() const;
   /// Calls piece(patch) on the root for the particles of all ranks after advance() has thrown on all of them, as
-  /// visit_patch() does, but without those that `keeps`(patch, k) says no to; before them begin(frame, count), on the
-  /// root. Returns the number of those left out. Collective.
+  /// visit_patch() does, but without particles k of which `keeps`(patch, k) is false; before them begin(frame, count),
+  /// on the root. Returns how many are left out. Collective.
   std::size_t visit_at_break(std::size_t rows, const std::function<bool(const Patch&, std::size_t)>& keeps,
                              const std::function<void(const Patch&, std::size_t)>& begin,
                              const std::function<void(const Patch&)>& piece) const;

@@ -118,7 +118,7 @@ struct SimulationState {
   /// Returns the energy gained from the kicks of all forces, kg m² rad⁻².
   double kick_work() const;
 
-  /// Returns the balance since the run began. Precondition: `means` are those of the particles at this boundary.
+  /// Returns the balance since the run began. Precondition: `means` are of the particles at this boundary.
   EnergyBalance balance(const diagnostics::ParticleMeans& means, const Frequencies& frequencies) const;
 };
 
