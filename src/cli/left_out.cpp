@@ -1,4 +1,4 @@
-// The demo's program (scripts/demo) has no command but those that the demo runs. The others say here how to build them.
+// The demo's program (scripts/demo) has the commands that the demo runs. The others say here how to build them.
 #include "commands.hpp"
 #include "number_tables.hpp"
 
