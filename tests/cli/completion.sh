@@ -41,8 +41,8 @@ offers files a-ring-wakes -- run ''
 offers folders -- run a-ring-wakes -o ''
 offers folders -- resume ''
 offers files -- analyze run --csv ''
-offers none drift gravity step -- bench ''
-only 3
+offers none drift gravity step light -- bench ''
+only 4
 offers none drift -- help bench dr
 offers none certified -- bench drift --finder ''
 offers none toomre_q toomre_q_without_waves -- analyze run --only toom

@@ -74,7 +74,7 @@ printf '\211HDF\r\n\032\nrubbish' >"$work/table.csv"
 refused 4 "damaged HDF5" "as HDF5"
 
 made x,y,z,r,m 0,0,0,1,4000 1.5,0,0,1,4000 10,10,0,1,4000 29.9,0,0,1,4000 -29.9,0,0,1,4000
-refused 3 "overlaps" "2 pairs of particles overlap, most of all $work/table.csv:5 and $work/table.csv:6, by 0.9 of their radius sum; correct them, or move them apart with --relax"
+refused 3 "overlaps" "2 pairs of particles overlap, most of all $work/table.csv:5 and $work/table.csv:6, by 0.9 of their radius sum; that pair meets across an edge of the box: is the shear offset right (0 m here; a CSV has none, the other formats of keeler convert keep it), and is the box that of the particles?; correct them, or move them apart with --relax"
 runs 0 generate "$work/scene.toml" --from-table "$work/table.csv" --relax -o "$work/relaxed.hdf"
 prints "relaxed" "2 pairs of particles overlap"
 prints "relaxed" "moved 4 particles apart, by "

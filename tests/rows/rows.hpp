@@ -36,8 +36,8 @@ struct Page {
 };
 
 /// NAME [--quick | --long] [--only SUBJECT]... [--write FILE]: measures the quick subjects, the extra ones, or all but
-/// these; or the subjects that are named. Sections of the page of which not all was measured stay as they are in the file. Returns the exit code: 1
-/// when a row fails, 2 for a wrong command line.
+/// these; or the subjects that are named. Sections of the page of which not all was measured stay as they are in the
+/// file. Returns the exit code: 1 when a row fails, 2 for a wrong command line.
 int measure_rows(int count, char** words, const std::vector<Subject>& subjects, const Page& page);
 
 } // namespace keeler::rows

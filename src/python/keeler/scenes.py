@@ -62,7 +62,7 @@ def overrides_of(tables):
 
 def _is_no_file(path, name):
     """Returns whether a text is the name of an example, or of nothing else."""
-    return (_core.is_example(name) and not path.is_file()) or (name.replace("-", "").isalnum() and not path.exists())
+    return name.replace("-", "").isalnum() and not path.is_file() and (_core.is_example(name) or not path.exists())
 
 
 def source(scene):

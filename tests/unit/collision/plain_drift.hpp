@@ -145,8 +145,8 @@ private:
       lost -= impulse.dot(lag);
     lost_ += lost;
     flux_ += relative.position.x() * impulse.y();
-    records.push_back(
-        {time, low_id, high_id, image, speed, after.fast, tangential_speed, lost, a.radius + b.radius, place});
+    records.push_back({time, low_id, high_id, image, speed, after.fast, tangential_speed, lost, a.radius + b.radius,
+                       place, normal, impulse});
     return true;
   }
 
