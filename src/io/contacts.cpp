@@ -120,7 +120,7 @@ ContactFile read_contacts(const std::filesystem::path& file) {
     read.rows.resize(hdf5::layout_of_dataset(hdf5::open_dataset(group, "Step")).count());
     for_each_column([&](const std::string& name, std::string_view, std::string_view, const auto& member) {
       using T = StoredType<decltype(member)>;
-      if (may_be_absent(name) && !hdf5::exists(group, name.c_str()))
+      if (may_be_absent(name) && !hdf5::exists(group, name))
         return;
       const hdf5::Handle dataset = hdf5::open_dataset(group, name);
       if (hdf5::layout_of_dataset(dataset).shape != hdf5::Shape{read.rows.size()})

@@ -98,17 +98,17 @@ private:
   // Returns the fraction of a beam that a sphere of this table scatters: light comes to a point with the density 2 μ₀
   // dμ₀ of the beam, and leaves with ∫ f μ dω/(π μ₀) of it.
   double sphere_albedo() const {
-    constexpr int steps = 120;
+    constexpr int steps = 120, half = steps / 2;
     double sum = 0.0;
     for (int i = 0; i < steps; ++i)
       for (int j = 0; j < steps; ++j)
-        for (int k = 0; k < steps / 2; ++k) {
+        for (int k = 0; k < half; ++k) {
           const double in = (i + 0.5) / steps, out = (j + 0.5) / steps;
           sum += in * out *
                  at({std::acos(in) / tilt_width, tilts}, {std::acos(out) / tilt_width, tilts},
-                    {(k + 0.5) / (steps / 2) * (azimuths - 1), azimuths});
+                    {(k + 0.5) / half * (azimuths - 1), azimuths});
         }
-    return 4.0 * sum / (steps * steps * (steps / 2.0)); // (2/π) ∫ dμ₀ 2 ∫ dμ ∫₀^π dφ f μ
+    return 4.0 * sum / (steps * steps * half); // (2/π) ∫ dμ₀ 2 ∫ dμ ∫₀^π dφ f μ
   }
 
   std::vector<double> values_;

@@ -151,7 +151,7 @@ std::size_t Tracer::count_blocked_in_cell(std::span<const Vec3> origins, const V
   if (!in_packets) {
     for (const Vec3& origin : origins) {
       RTCRay ray;
-      set(ray, origin, direction, endless);
+      set(ray, origin, direction, std::numeric_limits<double>::infinity());
       rtcOccluded1(scene, &context, &ray);
       blocked += ray.tfar < 0.0f ? 1 : 0;
     }
