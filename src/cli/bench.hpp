@@ -46,6 +46,16 @@ inline CLI::Option& add_state(CLI::App& command, std::string& state) {
                 bench::gravity_state_names());
 }
 
+/// Adds --count, --state and --from: the patch of a bench, or a snapshot in its place. `what_of_file` is its help.
+template<class Settings> void add_patch_or_snapshot(CLI::App& command, Settings& settings, const char* what_of_file) {
+  CLI::Option* count =
+      command
+          .add_option("--count", settings.count, "particles of the patch, at least 25336 of settled (default: 100000)")
+          ->transform(particle_number());
+  CLI::Option& state = add_state(command, settings.state);
+  command.add_option("--from", settings.from, what_of_file)->type_name("FILE")->excludes(count)->excludes(&state);
+}
+
 /// Returns measure(settings). Rank 0 shows progress after five seconds.
 template<class Settings, class Measure>
 auto measured(Settings settings, const Measure& measure, const Communicator& ranks = {}) {

@@ -86,14 +86,7 @@ void add_bench_light(CLI::App& bench_command, Action& action) {
   CLI::App& light = *bench_command.add_subcommand(
       "light", "the ray tracer: paths of sunlight and single rays among the spheres of a patch or a snapshot");
   bench::LightBenchSettings& s = options->bench;
-  CLI::Option* count =
-      light.add_option("--count", s.count, "particles of the patch, at least 25336 of settled (default: 100000)")
-          ->transform(particle_number());
-  CLI::Option& state = add_state(light, s.state);
-  light.add_option("--from", s.from, "trace the spheres of this snapshot")
-      ->type_name("FILE")
-      ->excludes(count)
-      ->excludes(&state);
+  add_patch_or_snapshot(light, s, "trace the spheres of this snapshot");
   light.add_option("--elevation", s.elevation, "of observer and Sun, degrees (default: 20)")
       ->check(number_between(0.1, 90.0, "an elevation"));
   add_repeats(light, s.repeats);

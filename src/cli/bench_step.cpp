@@ -34,14 +34,7 @@ void add_bench_step(CLI::App& bench_command, Action& action, const Communicator&
   CLI::App& step = *bench_command.add_subcommand(
       "step", "a whole step, gravity and collisions, in a patch of Saturn's A ring or in a snapshot");
   bench::StepBenchSettings& s = options->bench;
-  CLI::Option* count =
-      step.add_option("--count", s.count, "particles of the patch, at least 25336 of settled (default: 100000)")
-          ->transform(particle_number());
-  CLI::Option& state = add_state(step, s.state);
-  step.add_option("--from", s.from, "time the state of this snapshot, with the scene in it")
-      ->type_name("FILE")
-      ->excludes(count)
-      ->excludes(&state);
+  add_patch_or_snapshot(step, s, "time the state of this snapshot, with the scene in it");
   step.add_option("--kick-every", s.kick_every,
                   "steps per kick of gravity (default: 1; with --from as in the snapshot's scene)")
       ->transform(whole_number_between(1, scene::find_key("gravity.kick_every")->range.high, "a number of steps"));

@@ -3,6 +3,7 @@
 #include "number_tables.hpp"
 
 namespace keeler::cli {
+
 std::vector<NumberTable> further_number_tables() {
   return {};
 }

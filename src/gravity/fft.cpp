@@ -33,12 +33,14 @@ double mass_spread(std::span<const double> masses, const Communicator& ranks) {
   return mass > 0.0 ? std::sqrt(squares.value() * count) / mass : 1.0;
 }
 
-// Nodes are floats; between the transforms there are half as many complex waves; each column of waves has phases.
+// Nodes are floats; between the transforms there are half as many complex waves; each column of waves has phases. Where
+// there are too many nodes, other heights may leave any number up to the bound.
 double mesh_bytes(const ShearingBox& box, double spacing, double height, std::size_t count) {
   const Extent z{-0.5 * height, 0.5 * height};
   const double step = affordable_spacing(box, spacing, z, count);
   const double phases = sizeof(std::complex<float>) * box.area() / (step * step);
-  return (sizeof(float) + 0.5 * sizeof(std::complex<float>)) * mesh_nodes(box, step, z) + phases;
+  const double nodes = std::min(mesh_nodes(box, spacing, z), max_mesh_nodes(count));
+  return (sizeof(float) + 0.5 * sizeof(std::complex<float>)) * nodes + phases;
 }
 
 // The table has errors of equal spheres, a little above the measured ones in fresh and clumped patches

@@ -38,9 +38,12 @@ double mesh_nodes(const ShearingBox& box, double spacing, const Extent& z) {
   return box.size_x / spacing * (box.size_y / spacing) * ((z.high - z.low) / (plane_spacing_ratio * spacing) + 4.0);
 }
 
+double max_mesh_nodes(std::size_t count) {
+  return 0x1p21 + 64.0 * static_cast<double>(count);
+}
+
 double affordable_spacing(const ShearingBox& box, double spacing, const Extent& z, std::size_t count) {
-  const double max_nodes = 0x1p21 + 64.0 * static_cast<double>(count);
-  while (mesh_nodes(box, spacing, z) > max_nodes)
+  while (mesh_nodes(box, spacing, z) > max_mesh_nodes(count))
     spacing *= 1.1;
   return spacing;
 }

@@ -27,6 +27,9 @@ void require_layer(const ShearingBox& box, const Extent& z);
 /// Returns the number of nodes of a mesh with that spacing over the box and these heights, without an upper bound.
 double mesh_nodes(const ShearingBox& box, double spacing, const Extent& z);
 
+/// Returns the number of nodes that `count` particles may have at most.
+double max_mesh_nodes(std::size_t count);
+
 /// Returns the spacing, increased if the mesh would have too many nodes per particle: few particles in a large box, or
 /// some far from the layer. Clouds scale with the spacing, so the error stays equal, and neighbours cost more.
 double affordable_spacing(const ShearingBox& box, double spacing, const Extent& z, std::size_t count);

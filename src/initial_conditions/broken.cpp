@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 namespace keeler::initial_conditions {
+
 std::size_t keep_possible(Patch& patch) {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < patch.size(); ++k) {

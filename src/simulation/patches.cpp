@@ -25,19 +25,18 @@ Patch Simulation::patch_of(const Particles& particles) const {
 }
 
 std::vector<Body> Simulation::bodies_of(std::span<const std::uint64_t> ids) {
-  struct Row {
-    Body body;
-    std::uint64_t id;
-  };
-  std::vector<Row> rows;
-  for (const std::uint32_t k : own_among(ids, state_.particles.size()))
-    rows.push_back({state_.particles.bodies[k], state_.particles.ids[k]});
-  rows = ranks_.gather_on_all(std::span<const Row>(rows));
-  std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.id < b.id; });
-  assert(rows.size() == ids.size());
-  std::vector<Body> bodies;
-  for (const Row& row : rows)
-    bodies.push_back(row.body);
+  std::vector<Body> found;
+  std::vector<std::uint64_t> found_ids;
+  for (const std::uint32_t k : own_among(ids, state_.particles.size())) {
+    found.push_back(state_.particles.bodies[k]);
+    found_ids.push_back(state_.particles.ids[k]);
+  }
+  found = ranks_.gather_on_all(std::span<const Body>(found));
+  found_ids = ranks_.gather_on_all(std::span<const std::uint64_t>(found_ids));
+  assert(found.size() == ids.size());
+  std::vector<Body> bodies(ids.size());
+  for (std::size_t k = 0; k < found.size(); ++k)
+    bodies[static_cast<std::size_t>(std::lower_bound(ids.begin(), ids.end(), found_ids[k]) - ids.begin())] = found[k];
   return bodies;
 }
 

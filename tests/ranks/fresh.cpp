@@ -80,8 +80,8 @@ TEST_CASE("a fresh start has the bits of one process, and each rank has its part
         scene_with("[150, 60]", "optical_depth = 0.8\nvelocity_dispersion = 6.0\n" + wide),
         scene_with("[150, 60]", "optical_depth = 0.4\nvelocity_dispersion = 6.0\n" + wide,
                    "[particles.wake]\nwavelength = 40.0\npitch = 20.0\ncontrast = 0.3\n"),
-        scene_with("[300, 50]", "optical_depth = 0.3\n" + equal,
-                   "[particles.streamlines]\nwaves = 1\nbunching = 0.4\n"),
+        scene_with("[300, 50]", "optical_depth = 0.3\n" + equal, // slabs of 2, 3 and 6 ranks have whole waves
+                   "[particles.streamlines]\nwaves = 6\nbunching = 0.4\n"),
         parse_scene("planet.preset = \"saturn-a-ring\"\nbox.size = [120, 60]\ntime.end = 1.0\n"
                     "[particles]\ncount = 700\n"
                     "sizes = { law = \"populations\", populations = [[1.5, 100, 900.0], [0.8, 600, 450.0]] }\n",
