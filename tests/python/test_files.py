@@ -244,9 +244,11 @@ class Starts(InAFolder):
 
     def test_what_convert_wrote_is_taken_whole(self):
         sim = keeler.Simulation(RING).run(0.15)
-        sim.snapshot().save("snap.hdf")
-        subprocess.run([os.environ["KEELER_PROGRAM"], "convert", "snap.hdf", "--to", "npz", "-o", "snap.npz"], check=True, capture_output=True)
-        arrays = dict(np.load("snap.npz"))
+        with tempfile.TemporaryDirectory() as folder:
+            saved, converted = f"{folder}/snap.hdf", f"{folder}/snap.npz"
+            sim.snapshot().save(saved)
+            subprocess.run([os.environ["KEELER_PROGRAM"], "convert", saved, "--to", "npz", "-o", converted], check=True, capture_output=True)
+            arrays = dict(np.load(converted))
         self.assertGreater(arrays["shear_offset"], 0.0)
         start = keeler.start_from_arrays(RING, **arrays)
         np.testing.assert_array_equal(start.positions, sim.snapshot().positions)
