@@ -49,8 +49,8 @@ plot::Figure series_figure(const SeriesPlots& plots, const std::string& title, b
   for (plot::Panel& panel : figure.panels)
     panel.x.range = times.low < times.high ? times : plot::AxisRange();
   if (const auto& steady = plots.steady) {
-    figure.note = fmt::format("means of orbits {} to {} (shaded)", format_number(steady->since_orbit, 3),
-                              format_number(steady->until_orbit, 4));
+    figure.note = fmt::format("means of orbits {} to {} (shaded){}", format_number(steady->since_orbit, 3),
+                              format_number(steady->until_orbit, 4), steady->steady ? "" : ", not steady yet");
     for (plot::Panel& panel : figure.panels)
       panel.shaded = {steady->since_orbit, steady->until_orbit};
   }

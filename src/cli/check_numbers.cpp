@@ -136,12 +136,13 @@ std::vector<QuantityRow<CheckedScene>> course_rows() {
          return has_kicks(c) ? Value(c.scene.time.step * static_cast<double>(c.scene.gravity->kick_every))
                              : Value(Unknown{});
        }},
-      {word("gravity", "gravity", "solver and settings of self-gravity"),
+      {word("gravity", "gravity", "solver and settings of self-gravity, or \"none\""),
        [](Checked c) {
+         if (!c.scene.gravity)
+           return std::string("none");
          return advice::in_words(particles_known(c) ? chosen_for(c.derived.particle_count, *c.scene.gravity)
                                                     : *c.scene.gravity);
-       },
-       [](Checked c) { return c.scene.gravity.has_value(); }},
+       }},
       {word("resting_contacts", "contacts at rest",
             "treatment of contacts at rest: \"carried\" or \"bounced\"; null without self-gravity between particles"),
        [](Checked c) { return may_rest(c) ? Value(resting_word(c)) : Value(Unknown{}); }},

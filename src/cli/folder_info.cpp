@@ -241,10 +241,11 @@ void print_run(const Json& json) {
   const std::string state = text("state");
   print("folder      {}\ntitle       {}\n", text("folder"), text("title"));
   print("state       {}{}\n", state,
-        state == "finished"  ? std::string()
-        : state == "running" ? ", " + clock(json["remaining_s"]) + " left"
-        : state == "broken"  ? ": log.jsonl has the reason, broken_*.hdf the state"
-                             : "; \"keeler resume " + text("folder") + "\" continues");
+        state == "finished"           ? std::string()
+        : state == "running"          ? ", " + clock(json["remaining_s"]) + " left"
+        : state == "broken"           ? ": log.jsonl has the reason, broken_*.hdf the state"
+        : json["checkpoints"].empty() ? "; no checkpoint: \"keeler run --force\" starts it again"
+                                      : "; \"keeler resume " + text("folder") + "\" continues");
   print("orbits      {} of {}\n", format_number(json["time_orbits"].get<double>(), 4),
         format_number(json["end_orbits"].get<double>(), 4));
   print("particles   {}\nwall time   {}\n", json["particle_count"].get<std::uint64_t>(), clock(json["wall_s"]));

@@ -1,15 +1,14 @@
 #include "light_options.hpp"
 
 #include "common_options.hpp"
+#include "observation_columns.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/files/columns.hpp>
-#include <keeler/files/files.hpp>
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cmath>
 
 namespace keeler::cli {
 namespace {
@@ -65,43 +64,22 @@ light::Sight sight_of_degrees(double elevation_degrees, double azimuth, double s
 
 // Reads a table of observations: elevation, azimuth or longitude, sun_elevation, phase; in degrees.
 std::vector<light::Sight> sights_of_file(const std::string& file) {
-  const files::Columns table = files::parse_columns(files::read_text(file), file);
-  const auto column = [&](const char* name) -> const std::vector<double>* {
-    const auto found = std::find(table.names.begin(), table.names.end(), name);
-    return found == table.names.end() ? nullptr : &table.values[static_cast<std::size_t>(found - table.names.begin())];
-  };
-  const auto required = [&](const char* name) {
-    const std::vector<double>* const values = column(name);
-    if (!values)
-      throw UsageError(
-          fmt::format("{}:{}: there is no column '{}'; observations have the columns elevation, azimuth (or "
-                      "longitude), sun_elevation and phase, in degrees",
-                      file, table.header_line, name));
-    return values;
-  };
-  const std::vector<double>*const elevations = required("elevation"), *const suns = required("sun_elevation"),
-                                  *const phases = required("phase");
-  const std::vector<double>* const longitudes = column("longitude");
-  const std::vector<double>* const azimuths = longitudes ? longitudes : required("azimuth");
+  const ObservationColumns table(file);
+  const std::vector<double>&elevations = table.required("elevation"), &suns = table.required("sun_elevation"),
+        &phases = table.required("phase");
+  const std::vector<double> azimuths = table.azimuths();
   std::vector<light::Sight> sights;
-  for (std::size_t row = 0; row < elevations->size(); ++row) {
-    const auto fail = [&](const std::string& what) {
-      throw UsageError(fmt::format("{}:{}: {}", file, table.lines[row], what));
-    };
-    for (const double angle : {(*elevations)[row], (*suns)[row]})
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    for (const double angle : {elevations[row], suns[row]})
       if (!(std::fabs(angle) >= lowest_sight && std::fabs(angle) <= 90.0))
-        fail(fmt::format("the elevation {:g} is not from 0.1 to 90 degrees or from -90 to -0.1; correct it", angle));
-    if (!(std::fabs((*azimuths)[row]) <= 720.0))
-      fail(fmt::format("{:g} is not an azimuth in degrees; correct it", (*azimuths)[row]));
+        table.fail(row, fmt::format("the elevation {:g} is not from 0.1 to 90 degrees or from -90 to -0.1; correct it",
+                                    angle));
     try {
-      sights.push_back(sight_of_degrees((*elevations)[row], (longitudes ? -1.0 : 1.0) * (*azimuths)[row], (*suns)[row],
-                                        (*phases)[row]));
+      sights.push_back(sight_of_degrees(elevations[row], azimuths[row], suns[row], phases[row]));
     } catch (const UsageError& error) {
-      fail(error.what());
+      table.fail(row, error.what());
     }
   }
-  if (sights.empty())
-    throw UsageError(fmt::format("'{}' has no row; give at least one observation", file));
   return sights;
 }
 

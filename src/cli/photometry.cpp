@@ -73,15 +73,16 @@ nlohmann::ordered_json json_of(const PhotometryOptions& options, const Measured&
 void print_text(const PhotometryOptions& options, std::size_t snapshots, std::span<const light::Photometry> found) {
   cli::print("law {}, albedo {}; {}, {} rays each\n", options.law.name, format_number(options.law.albedo),
              pluralize(snapshots, "snapshot"), found.empty() ? 0 : found.front().rays);
-  cli::print("{:>7} {:>7} {:>7} {:>7} {:>8}  {:<21} {:<10} {:<10} {}\n", "B", "phi", "B'", "phase", "longit.", "I/F",
-             "single", "multiple", "T");
+  cli::print("{:>7} {:>7} {:>7} {:>7} {:>8}  {:<21} {:<9} {:<10} {:<10} {}\n", "B", "phi", "B'", "phase", "longit.",
+             "I/F +- by rays", "scatter", "single", "multiple", "T");
   for (const light::Photometry& one : found) {
     const quantities::Record record = record_of(one);
     const auto angle = [&](const char* name) { return format_number(*number_in(record, name), 4); };
-    cli::print("{:>7} {:>7} {:>7} {:>7} {:>8}  {:<8.5f} +- {:<9.2g} {:<10.5f} {:<10.5f} {:.5f}\n",
+    cli::print("{:>7} {:>7} {:>7} {:>7} {:>8}  {:<8.5f} +- {:<9.2g} {:<9} {:<10.5f} {:<10.5f} {:.5f}\n",
                angle("observer_elevation"), angle("observer_azimuth"), angle("sun_elevation"), angle("phase"),
-               angle("ring_longitude"), one.reflectance.value, one.reflectance.error, one.single.value,
-               one.multiple.value, one.transmission.value);
+               angle("ring_longitude"), one.reflectance.value, one.reflectance.error,
+               one.scatter ? format_number(*one.scatter, 2) : "-", one.single.value, one.multiple.value,
+               one.transmission.value);
   }
   for (const light::AzimuthGroup& group : light::azimuth_groups(found))
     if (group.asymmetry)

@@ -71,23 +71,25 @@ StoredPatches load_patches(const fs::path& path, double orbits) {
   for (auto file = files.rbegin(); file != files.rend(); ++file) {
     io::Snapshot snapshot = load_snapshot(*file);
     if (!stored.patches.empty() &&
-        snapshot.patch.time_orbits < stored.patches.back().time_orbits - orbits * time_rounding)
+        snapshot.patch.time_orbits < stored.patches.front().time_orbits - orbits * time_rounding)
       break;
     append(stored, std::move(snapshot), *file);
-    std::rotate(stored.patches.begin(), stored.patches.end() - 1, stored.patches.end()); // oldest first
   }
+  std::reverse(stored.patches.begin(), stored.patches.end()); // oldest first
   return stored;
 }
 
 StoredPatches load_patches_between(const fs::path& folder, double since, double until) {
   StoredPatches stored;
-  for (const fs::path& file : snapshots_in(folder)) {
-    io::Snapshot snapshot = load_snapshot(file);
-    if (snapshot.patch.time_orbits > until * time_rounding)
+  const std::vector<fs::path> files = snapshots_in(folder);
+  for (auto file = files.rbegin(); file != files.rend(); ++file) { // so that earlier files may be damaged
+    io::Snapshot snapshot = load_snapshot(*file);
+    if (snapshot.patch.time_orbits * time_rounding < since)
       break;
-    if (snapshot.patch.time_orbits * time_rounding >= since)
-      append(stored, std::move(snapshot), file);
+    if (snapshot.patch.time_orbits <= until * time_rounding)
+      append(stored, std::move(snapshot), *file);
   }
+  std::reverse(stored.patches.begin(), stored.patches.end()); // oldest first
   if (stored.patches.empty())
     throw UsageError(fmt::format("no snapshot in '{}' is of orbits {:.6g} to {:.6g}; choose a longer part of the run",
                                  folder.string(), since, until));

@@ -198,10 +198,10 @@ std::vector<SummaryRow> cost_rows() {
   return {
       {{"peak_memory", unit::megabytes, "memory at most", "10⁶ bytes; null where the system does not say"},
        [](From) { return value_of(std::optional(1e-6 * peak_memory())); }},
-      {{"wall", unit::seconds, "wall time", "wall time of this command"}, [](From s) { return s.cost.wall_s; }},
       {{"cpu", unit::seconds, "processor time", "processor time of this command"}, [](From s) { return s.cost.cpu_s; }},
       {{"orbits_done", unit::unnamed("orbits"), "", "by this command"},
        [](From s) { return s.simulation.orbits() - s.cost.first_orbit; }},
+      {{"wall", unit::seconds, "wall time", "wall time of this command"}, [](From s) { return s.cost.wall_s; }},
       {{"split.start", unit::seconds, "  start", "wall time of making or reading the initial state; 0 after a resume"},
        [](From s) { return s.cost.start_s; }},
       {{"split.drift", unit::seconds, "  drift", "of motion and contacts"},

@@ -58,6 +58,11 @@ refuses "a law out of range" "give a number from" photometry "$snap" --elevation
 refuses "rays and an error" "excludes" photometry "$snap" --elevation 20 --rays 5 --error 0.1
 printf 'elevation,longitude,sun_elevation,phase\n10,250,10,6\n10,250,30,6\n' >"$work/bad.csv"
 refuses "an impossible observation" "bad.csv:3: with the observer" photometry "$snap" --observations "$work/bad.csv"
+printf 'elevation,azimuth,longitude,sun_elevation,phase\n10,250,250,10,6\n' >"$work/bad.csv"
+refuses "two directions" "bad.csv:1: of the columns 'azimuth' and 'longitude' each determines the other" photometry "$snap" --observations "$work/bad.csv"
+refuses "two directions of a star" "bad.csv:1: of the columns 'azimuth' and 'longitude' each determines the other" occultation "$snap" --observations "$work/bad.csv"
+printf 'elevation,azimuth,transmission,normal_optical_depth\n10,250,0.5,3\n' >"$work/bad.csv"
+refuses "two depths" "bad.csv:1: of the columns 'transmission' and 'normal_optical_depth' each" occultation "$snap" --observations "$work/bad.csv"
 printf 'elevation,phase\n10,6\n' >"$work/bad.csv"
 refuses "a missing column" "bad.csv:1: there is no column 'sun_elevation'" photometry "$snap" --observations "$work/bad.csv"
 refuses "a figure of another kind" "give it one of these endings" photometry "$snap" --elevation 20 --figure "$work/a.jpg"
