@@ -83,7 +83,7 @@ def parsed(output):
     if output.startswith("{"):
         return json.loads(output, object_hook=Fields)
     lines = [line for line in output.splitlines() if not line.startswith("#")]
-    if lines and re.fullmatch(r"\w+(,\w+)+", lines[0]):
+    if lines and re.fullmatch(r"[\w.]+(,[\w.]+)+", lines[0]):
         rows = list(csv.reader(io.StringIO("\n".join(lines))))
         return Fields({name: [number(row[k]) for row in rows[1:]] for k, name in enumerate(rows[0])})
     return output

@@ -86,8 +86,11 @@ StoredPatches load_patches_between(const fs::path& folder, double since, double 
     io::Snapshot snapshot = load_snapshot(*file);
     if (snapshot.patch.time_orbits * time_rounding < since)
       break;
+    const bool first = snapshot.patch.time_orbits <= since * time_rounding;
     if (snapshot.patch.time_orbits <= until * time_rounding)
       append(stored, std::move(snapshot), *file);
+    if (first)
+      break;
   }
   std::reverse(stored.patches.begin(), stored.patches.end()); // oldest first
   if (stored.patches.empty())

@@ -70,6 +70,9 @@ wait "$process" 2>/dev/null
 accepts "killed" info "$work/works"
 prints "killed" "state       not running; \"keeler resume $work/works\" continues"
 prints "killed" "wall time   not known"
+rm "$work"/works/checkpoint_*.h5
+accepts "killed before a checkpoint" info "$work/works"
+prints "killed before a checkpoint" 'state       not running; no checkpoint: "keeler run --force" starts it again'
 interrupted TERM 75 "$work/stopped"
 accepts "stopped" info "$work/stopped"
 prints "stopped" "state       stopped; \"keeler resume $work/stopped\" continues"

@@ -79,6 +79,10 @@ for s in found["lines_of_sight"]:
 assert found["wake_model"]["gap_to_width"] > 0
 EOF
 printf 'elevation,longitude,normal_optical_depth\n10,0,0.4\n30,60,0.5\n20,100,0.45\n40,10,0.5\n60,50,0.5\n' >"$work/uvis.csv"
+cp -r "$work/run" "$work/cut"
+truncate -s 1000 "$work/cut/snap_000000.hdf"
+accepts "a part behind a damaged snapshot" occultation "$work/cut" --since 0.01 --elevation 30 --azimuth 60 --tracks 5 --json
+refuses_with 4 "a part with a damaged snapshot" "snap_000000.hdf" occultation "$work/cut" --since 0 --elevation 30 --azimuth 60 --tracks 5 --json
 accepts "occultations beside observed ones" occultation "$snap" --observations "$work/uvis.csv" --section ellipse --tracks 20
 prints "the observed wakes" "wakes observed: H/W"
 refuses "no line of sight" "give --elevation or --observations" occultation "$snap"

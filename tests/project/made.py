@@ -46,10 +46,10 @@ class Marks(unittest.TestCase):
 class Values(unittest.TestCase):
     def test_outputs(self):
         results = {"json": made_values.parsed('{"a": {"b": [1, -2.5]}}'), "csv": made_values.parsed("time_orbits,x\n0,3\n1,5\n2,4\n"),
-                   "text": made_values.parsed("settled after 9.5 orbits\n")}
+                   "grid": made_values.parsed("particles.density,x\n300,3\n600,5\n"), "text": made_values.parsed("settled after 9.5 orbits\n")}
         for template, text in (("{json.a.b[1]:.1f} m", "−2.5 m"), ("{row_at(csv, 1.2).x:.0f}", "5"), ("{csv.x[-1] / csv.x[0]:.2f}", "1.33"),
                                ("{find('after ([0-9.]+)', text):g}", "9.5"), ("{listed(csv.x, '.0f')}", "3, 5 and 4"), ("{maxima(csv, 'x')[0][0]:g}", "1"),
-                               ("{max(between(csv, 'x', 1.5, 2)):g}", "4")):
+                               ("{max(between(csv, 'x', 1.5, 2)):g}", "4"), ("{grid.x[1]:g}", "5")):
             self.assertEqual(made_values.printed(template, results), text)
         with self.assertRaisesRegex(AttributeError, "no member 'c'; there are a"):
             made_values.printed("{json.c}", results)
