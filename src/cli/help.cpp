@@ -10,8 +10,11 @@
 #include <keeler/runs/summary.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cassert>
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -49,19 +52,36 @@ ExitCode list_numbers() {
   return ExitCode::done;
 }
 
-// Explains a number in every table that contains it. Returns false if none does.
-bool explain_number(const std::string& name) {
+// Prints the numbers that are asked for, below the titles of their tables. Returns false if there are none.
+bool explain_numbers(const std::function<bool(const quantities::Quantity&)>& asked) {
   bool is_known = false;
   for (const NumberTable& table : number_tables()) {
     std::string lines;
     for (const quantities::Quantity& quantity : table.quantities)
-      if (quantity.is_called(name))
+      if (asked(quantity))
         lines += line_of(quantity);
     if (!lines.empty())
       print("{}\n{}", table.title, lines);
     is_known = is_known || !lines.empty();
   }
   return is_known;
+}
+
+bool is_labelled(const quantities::Quantity& quantity, const std::string& words) {
+  const std::size_t indent = quantity.label.find_first_not_of(' ');
+  return indent != std::string::npos && quantity.label.substr(indent) == words;
+}
+
+// Returns whether a name or a label has these words in it, of three letters or more.
+bool mentions(const quantities::Quantity& quantity, const std::string& words) {
+  return words.size() >= 3 &&
+         (quantity.full_name().find(words) != std::string::npos || quantity.label.find(words) != std::string::npos);
+}
+
+bool is_command(const CLI::App& program, const std::string& word) {
+  const std::vector<const CLI::App*> commands = listed_commands(program);
+  return std::any_of(commands.begin(), commands.end(),
+                     [&](const CLI::App* command) { return command->get_name() == word; });
 }
 
 // Returns the command named by these words, such as {"bench", "drift"}. Throws UsageError with a suggestion.
@@ -122,14 +142,22 @@ void add_help(CLI::App& program, Action& action) {
   const auto words = std::make_shared<std::vector<std::string>>();
   CLI::App& command = *program.add_subcommand("help", "list the commands, or explain a command or a number");
   command
-      .add_option("COMMAND", *words, "a command, with a subcommand: bench drift; \"numbers\", or the name of a number")
+      .add_option("COMMAND", *words,
+                  "a command, with a subcommand: bench drift; \"numbers\", or a number by its name, its label or a "
+                  "part of them")
       ->type_name("");
-  examples_of(command, {"keeler help run", "keeler help bench drift", "keeler help numbers", "keeler help toomre_q"});
+  examples_of(command, {"keeler help run", "keeler help bench drift", "keeler help numbers", "keeler help toomre_q",
+                        "keeler help viscosity"});
   command.callback([words, &program, &action] {
     action = [words, &program] {
       if (words->size() == 1 && words->front() == "numbers")
         return list_numbers();
-      if (words->size() == 1 && explain_number(words->front()))
+      const std::string name = fmt::format("{}", fmt::join(*words, " "));
+      using quantities::Quantity;
+      if (explain_numbers([&](const Quantity& one) { return one.is_called(name) || is_labelled(one, name); }))
+        return ExitCode::done;
+      if (!words->empty() && !is_command(program, words->front()) &&
+          explain_numbers([&](const Quantity& one) { return mentions(one, name); }))
         return ExitCode::done;
       return print_help(find_command(program, *words));
     };

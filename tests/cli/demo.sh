@@ -36,5 +36,10 @@ cp "$work/out" "$work/numbers"
 "$whole" analyze "$work/a" | diff - "$work/numbers" || fail "analyze: other numbers"
 accepts "a number" help toomre_q
 prints "a number" "keeler analyze"
+accepts "a label" help Toomre Q
+prints "a label" "  toomre_q "
+accepts "a part of a name" help viscosity
+prints "a part of a name" "  collisional_viscosity_m2_s"
+refuses "no number" "has no command 'viscos_ty'" help viscos_ty
 refuses "no command" "has no command 'sweeep'; did you mean 'sweep'?" sweeep
 report
