@@ -1,5 +1,6 @@
 // A result depends on the scene and the state alone: equal bits after many steps for any number of threads, for
 // neighbour lists kept or rebuilt at every step, and for any order of the particles in memory.
+#include "draws.hpp"
 #include "unit/collision/spheres.hpp"
 #include "unit/collision/twin.hpp"
 
@@ -9,6 +10,8 @@
 #include <keeler/simulation/simulation.hpp>
 
 #include <fmt/format.h>
+
+#include <span>
 
 namespace any_way_test {
 
@@ -25,7 +28,9 @@ struct Way {
   bool shuffled = false; // in memory
 };
 
-constexpr Way ways[] = {{1, false, false}, {2, true, false}, {3, true, true}, {8, true, false}, {3, false, true}};
+// Sanitizers watch the last two, after one thread that keeps its lists.
+constexpr Way all_ways[] = {{1, false, false}, {2, true, false}, {3, true, true}, {8, true, false}, {3, false, true}};
+constexpr std::span<const Way> ways = std::span(all_ways).subspan(test::sanitized ? 3 : 0);
 
 // Moves particle k to index (stride · k) mod count: far from its neighbours.
 template<class T> void shuffle(std::vector<T>& all) {
@@ -144,14 +149,16 @@ TEST_CASE("the same bits any way: a moonlet, and particles that outrun the other
 
 TEST_CASE("the same bits any way: rows of touching spheres, each hit at its end at the same instant") {
   std::vector<test::Sphere> spheres;
-  for (int row = 0; row < 40; ++row)
+  const int rows = test::sanitized ? 10 : 40;
+  for (int row = 0; row < rows; ++row)
     for (int k = 0; k < 25; ++k)
       spheres.push_back(
-          {{4.0 * row - 80.0, 2.0 * k + (k > 0 ? 0.5 : 0.0) - 25.0, 0.0}, {0.0, k > 0 ? 0.0 : 30.0, 0.0}});
+          {{160.0 / rows * row - 80.0, 2.0 * k + (k > 0 ? 0.5 : 0.0) - 25.0, 0.0}, {0.0, k > 0 ? 0.0 : 30.0, 0.0}});
   for (const double restitution : {0.5, 1.0}) {
     CollisionSettings settings;
     settings.restitution = constant_restitution(restitution);
-    CHECK(same_any_way(test::patch_of(spheres, 160.0, 70.0), settings, {two_pi * 5e-3, 3}).collisions > 900);
+    CHECK(same_any_way(test::patch_of(spheres, 160.0, 70.0), settings, {two_pi * 5e-3, 3}).collisions >
+          static_cast<std::uint64_t>(45 * rows / 2));
   }
 }
 

@@ -2,6 +2,7 @@
 // elsewhere, and reordered in the store. With the exact test the lists must visit exactly these pairs, each once.
 #include "neighbours/neighbour_lists.hpp"
 
+#include "draws.hpp"
 #include "unit/collision/listed_patch.hpp"
 
 #include <keeler/core/error.hpp>
@@ -36,8 +37,9 @@ TEST_CASE("at every step and after every hit the lists visit each pair that may 
   };
   Seen seen;
   std::uint64_t rebuilds = 0, renewed = 0;
+  const std::uint64_t seeds = test::sanitized ? 1 : 2;
   for (std::size_t s = 0; s < std::size(settings); ++s)
-    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
       CAPTURE(s);
       CAPTURE(seed);
       ListedPatch patch(settings[s], seed);
@@ -47,10 +49,10 @@ TEST_CASE("at every step and after every hit the lists visit each pair that may 
     }
   MESSAGE(seen.pairs << " pairs at begins (" << seen.more << " not exactly) and " << seen.partners << " partners in "
                      << seen.steps << " steps; " << rebuilds << " rebuilds, " << renewed << " lists renewed");
-  CHECK(seen.pairs > 80000);
-  CHECK(seen.partners > 20000);
+  CHECK(seen.pairs > 40000 * seeds);
+  CHECK(seen.partners > 10000 * seeds);
   CHECK(rebuilds < seen.steps / 3);
-  CHECK(renewed > 1200);
+  CHECK(renewed > 600 * seeds);
 }
 
 namespace {
@@ -96,7 +98,7 @@ void replace_some(ListedPatch& patch, std::size_t number) {
 TEST_CASE("particles that are moved, grow, are reordered, added or removed between steps are found") {
   Seen seen;
   std::uint64_t rebuilds = 0, renewed = 0;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::draws(16); ++seed) {
     CAPTURE(seed);
     ListedPatch patch({.count = 200, .ratio = seed % 2 ? 1.0 : 10.0, .heat = 0.3, .step = 0.01, .hits = 0.05}, seed);
     for (int change = 0; change < 20; ++change) {
@@ -125,9 +127,9 @@ TEST_CASE("particles that are moved, grow, are reordered, added or removed betwe
     renewed += patch.lists.counts().renewed;
   }
   MESSAGE(seen.steps << " steps, " << rebuilds << " rebuilds, " << renewed << " lists renewed");
-  CHECK(seen.pairs > 10000);
+  CHECK(seen.pairs > test::draws(10000));
   CHECK(rebuilds < seen.steps * 3 / 4);
-  CHECK(renewed > 300);
+  CHECK(renewed > test::draws(300));
 }
 
 TEST_CASE("a hit that changes nothing rebuilds no list, also at an edge of the box") {
@@ -182,7 +184,7 @@ TEST_CASE("thousands of particles have the same lists and pairs for any number o
       const std::vector<FoundPair> found = one.visited(one.lists);
       CHECK((three.visited(three.lists) == found));
       pairs += found.size();
-      if (step == 4)
+      if (step == 4 && !test::sanitized)
         CHECK((one.all_pairs() == found));
       std::size_t different = 0;
       for (std::size_t i = 0; i < setting.count; ++i)

@@ -1,5 +1,7 @@
 #include <keeler/initial_conditions/uniform.hpp>
 
+#include "draws.hpp"
+
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/interrupt.hpp>
@@ -131,11 +133,12 @@ TEST_CASE("each pair is apart, by brute force, in boxes large and small") {
 }
 
 TEST_CASE("sizes over three and four decades are placed without overlap") {
-  const Patch power = uniform_patch(layer(power_law(0.01, 10.0, 10000), 0.6, 0.2, 4));
+  const Patch power = uniform_patch(layer(power_law(0.01, 10.0, test::draws(10000)), 0.6, 0.2, 4));
   CHECK(cells::largest_overlap(power).depth == 0.0);
   std::vector<double> table;
   for (int k = 0; k <= 40; ++k) // from 1 to 10⁻⁴, in increasing number
-    table.insert(table.end(), static_cast<std::size_t>(std::pow(10.0, 0.09 * k)), std::pow(10.0, -0.1 * k));
+    table.insert(table.end(), test::draws(static_cast<std::uint64_t>(std::pow(10.0, 0.09 * k))),
+                 std::pow(10.0, -0.1 * k));
   const Patch listed = uniform_patch(layer(table, 0.8, 0.2, 5));
   CHECK(cells::largest_overlap(listed).depth == 0.0);
 }
@@ -203,7 +206,7 @@ TEST_CASE("progress rises to the end, and a stop is obeyed at the next sweep") {
 }
 
 TEST_CASE("a request that no packing can meet is refused in words") {
-  UniformRequest request = equal_layer(1.2, 0.4, 300, 1);
+  UniformRequest request = equal_layer(1.2, 0.4, test::draws(300), 1);
   request.dispersion_z = 0.0; // a monolayer cannot hold τ = 1.2
   CHECK_THROWS_AS(uniform_patch(request), UsageError);
 }
