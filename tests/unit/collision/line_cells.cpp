@@ -2,6 +2,8 @@
 // single line, before and after lines have been replaced.
 #include "neighbours/line_cells.hpp"
 
+#include "draws.hpp"
+
 #include <keeler/core/random.hpp>
 
 #include <doctest/doctest.h>
@@ -104,7 +106,7 @@ struct Sorted {
 TEST_CASE("the pairs of a rebuild are those that each line finds by itself and those of testing all pairs") {
   std::size_t pairs = 0, boxes = 0;
   std::uint64_t tested = 0, all = 0;
-  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::draws(60); ++seed) {
     Sorted sorted(seed);
     if (!sorted.cells.one_image())
       continue;
@@ -128,14 +130,14 @@ TEST_CASE("the pairs of a rebuild are those that each line finds by itself and t
     all += sorted.lines.size() * (sorted.lines.size() - 1) / 2;
   }
   MESSAGE(pairs << " pairs of " << tested << " tested of " << all << " in " << boxes << " boxes");
-  CHECK(boxes > 30);
-  CHECK(pairs > 10000);
+  CHECK(boxes > test::draws(30));
+  CHECK(pairs > test::draws(10000));
   CHECK(tested < all / 3);
 }
 
 TEST_CASE("a replaced line is found where it is, slow or fast, near its old position or not") {
   std::size_t found = 0, boxes = 0, slow = 0;
-  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::draws(60); ++seed) {
     Sorted sorted(seed, 500);
     if (!sorted.cells.one_image())
       continue;
@@ -168,9 +170,9 @@ TEST_CASE("a replaced line is found where it is, slow or fast, near its old posi
       }
   }
   MESSAGE(found << " found in " << boxes << " boxes; " << slow << " slow lines replaced");
-  CHECK(boxes > 30);
-  CHECK(found > 50000);
-  CHECK(slow > 1000);
+  CHECK(boxes > test::draws(30));
+  CHECK(found > test::draws(50000));
+  CHECK(slow > test::draws(1000));
 }
 
 TEST_CASE("a line that would reach around the box is reported, when cells are built and when it is new") {
