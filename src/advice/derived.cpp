@@ -68,7 +68,7 @@ double mesh_memory(const Scene& scene, std::size_t count, double size_x, double 
   const double height = layer_height(scene.optical_depth(), scene.particles.layer_sizes(),
                                      scene.particles.velocity_dispersion, scene.planet.frequencies.nu);
   const double spacing = pairwise ? gravity::cheapest_spacing : gravity.mesh_spacing;
-  return gravity::mesh_bytes(box, spacing * distance, 2.0 * mesh_scale_heights * height, count);
+  return gravity::max_mesh_bytes(box, spacing * distance, 2.0 * mesh_scale_heights * height, count);
 }
 
 // Returns the bytes of a run without the program. The mesh of a patch from a file is unknown here; the solver checks

@@ -14,7 +14,9 @@ namespace keeler::config {
 namespace {
 
 std::string meaning_of(const Key& key) {
-  return key.unit.empty() || key.unit == "1" ? key.meaning : fmt::format("{}, in {}", key.meaning, key.unit);
+  return key.unit.empty() || key.unit == "1"
+             ? key.meaning
+             : fmt::format("{}{}in {}", key.meaning, key.meaning.empty() ? "" : ", ", key.unit);
 }
 
 std::string sample_of(const Key& key) {

@@ -27,6 +27,10 @@ inline constexpr double cheapest_spacing = 1.6;
 /// the memory per particle. For estimates; `spacing` is that of FftSettings.
 double mesh_bytes(const ShearingBox& box, double spacing, double height, std::size_t count);
 
+/// Returns the bytes that it takes at most: if the mesh has too many nodes (affordable_spacing()), particles at other
+/// heights may leave any number of nodes up to the bound.
+double max_mesh_bytes(const ShearingBox& box, double spacing, double height, std::size_t count);
+
 /// Returns √⟨m²⟩ / ⟨m⟩ over all ranks: 1 for equal masses. The bits do not depend on the order. Collective.
 double mass_spread(std::span<const double> masses, const Communicator& ranks = {});
 

@@ -31,13 +31,14 @@ accepts "the same, check" check "$work/radial.toml" --set gravity.shortest_wavel
 [ "$(text memory_mb "$work/out" | cut -d . -f 1)" -gt 2000 ] || fail "a large mesh: check foretells $(text memory_mb "$work/out") MB"
 
 # What a finer mesh adds to the memory estimated by check is what it adds to the memory of a run. The memory of the program itself
-# cancels: how much of the libraries' files a system holds in memory differs by 16 MB.
+# cancels. Freed arrays go back to the system here: in the heap they may leave a gap as large as a mesh, which depends on as
+# little as the length of a path.
 foretells() { # SCENE KEY COARSE FINE
   local scene=$1 key=$2 value foretold=() taken=()
   for value in "$3" "$4"; do
     OMP_NUM_THREADS=1 runs 0 check "$work/$scene" --set "$key=$value" --json
     foretold+=("$(text memory_mb "$work/out")")
-    runs 0 run "$work/$scene" --set "$key=$value" --set time.end=0.004 --threads 1 -o "$work/mesh" --force -q
+    MALLOC_MMAP_THRESHOLD_=1048576 runs 0 run "$work/$scene" --set "$key=$value" --set time.end=0.004 --threads 1 -o "$work/mesh" --force -q
     taken+=("$(text peak_memory_mb "$work/mesh/summary.json")")
   done
   awk -v f="$(awk "BEGIN { print ${foretold[1]} - ${foretold[0]} }")" -v t="$(awk "BEGIN { print ${taken[1]} - ${taken[0]} }")" \
