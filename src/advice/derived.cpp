@@ -24,23 +24,38 @@ constexpr double program_bytes = 33e6;  // code, libraries, buffers that do not 
 constexpr double drift_bytes = 515.0;   // lines, cells, lists, event counts, buffers: at most 590 with state
 constexpr double tree_node_bytes = 120; // box, mass, centre, quadrupole, links
 constexpr double nodes_per_particle = 0.5;
+// on several ranks each has copies of the particles of all, and the sources or the tree made of them
+constexpr double gathered_sources_bytes = 90.0, gathered_tree_bytes = 210.0;
 constexpr double tiled_bytes = 80.0; // copies of the particles in the order of the mesh's tiles
 } // namespace cost
 
-double bytes_per_particle(const Scene& scene, std::size_t count) {
+using Solver = GravitySettings::Solver;
+
+// The particles that this process owns, and those of all ranks.
+struct Counts {
+  std::size_t own, all;
+
+  bool are_divided() const { return own < all; }
+};
+
+bool is_pairwise(Solver solver) {
+  return solver == Solver::tree || solver == Solver::direct;
+}
+
+// Returns the bytes of the state, the drift and the solver. Without those of particles that a solver gathers.
+double bytes_per_particle(const Scene& scene, const Counts& counts) {
   const double state = sizeof(Body) + sizeof(std::uint64_t);
   const double output_copy = 2 * sizeof(Vec3) + 2 * sizeof(double) + sizeof(std::uint64_t); // a Patch
   const double spins = scene.collisions.friction ? 2.0 * sizeof(Vec3) : 0.0;                // in the state and a Patch
   double total = state + spins + output_copy + cost::drift_bytes;
   if (scene.gravity) {
     total += 2 * sizeof(Vec3) + sizeof(double) + sizeof(std::uint64_t); // a GravityProblem and its result
-    const auto solver = chosen_for(count, *scene.gravity).solver;
-    if (solver == GravitySettings::Solver::fft || solver == GravitySettings::Solver::mesh)
+    const Solver solver = chosen_for(counts.all, *scene.gravity).solver;
+    if (solver == Solver::fft || solver == Solver::mesh)
       total += cost::tiled_bytes;
-    if (solver == GravitySettings::Solver::tree)
+    if (solver == Solver::tree && !counts.are_divided())
       total += cost::nodes_per_particle * cost::tree_node_bytes + 4 * sizeof(double);
-    const bool pairwise = solver == GravitySettings::Solver::tree || solver == GravitySettings::Solver::direct;
-    if (pairwise && scene.output.stress_every > 0)
+    if (is_pairwise(solver) && scene.output.stress_every > 0)
       total += cost::tiled_bytes; // the mesh that measures their energy
   }
   return total;
@@ -50,15 +65,12 @@ double bytes_per_particle(const Scene& scene, std::size_t count) {
 constexpr double mesh_scale_heights = 5.0;
 
 // Returns the bytes of the mesh that gravity, or the measurement of its energy, makes for `count` particles in a box.
-double mesh_memory(const Scene& scene, std::size_t count, double size_x, double size_y) {
+double mesh_memory(const Scene& scene, const GravitySettings& gravity, std::size_t count, double size_x,
+                   double size_y) {
   assert(count > 0 && size_x > 0.0 && size_y > 0.0);
-  using Solver = GravitySettings::Solver;
-  if (!scene.gravity)
-    return 0.0;
-  const GravitySettings gravity = chosen_for(count, *scene.gravity);
   if (gravity.solver == Solver::axisymmetric)
     return gravity::radial_mesh_bytes(size_x, gravity.shortest_wavelength, threads());
-  const bool pairwise = gravity.solver == Solver::tree || gravity.solver == Solver::direct;
+  const bool pairwise = is_pairwise(gravity.solver);
   if (pairwise && (scene.output.stress_every == 0 || !has_energy_meter(gravity)))
     return 0.0;
   ShearingBox box;
@@ -71,14 +83,28 @@ double mesh_memory(const Scene& scene, std::size_t count, double size_x, double 
   return gravity::max_mesh_bytes(box, spacing * distance, 2.0 * mesh_scale_heights * height, count);
 }
 
+// Returns the bytes of the copies that a solver of many ranks makes of all particles.
+double gathered_memory(const GravitySettings& gravity, const Counts& counts) {
+  if (!counts.are_divided() || !is_pairwise(gravity.solver))
+    return 0.0;
+  const bool has_tree = gravity.solver == Solver::tree;
+  return (has_tree ? cost::gathered_tree_bytes : cost::gathered_sources_bytes) * static_cast<double>(counts.all);
+}
+
 // Returns the bytes of a run without the program. The mesh of a patch from a file is unknown here; the solver checks
 // it.
-double run_bytes(const Scene& scene, std::size_t count) {
-  const double particles = bytes_per_particle(scene, count) * static_cast<double>(count);
-  if (scene.start_from || scene.particles.count == 0 || count == 0)
-    return particles;
-  const double factor = std::sqrt(static_cast<double>(count) / static_cast<double>(scene.particles.count));
-  return particles + mesh_memory(scene, count, factor * scene.size_x, factor * scene.size_y);
+double run_bytes(const Scene& scene, const Counts& counts) {
+  double bytes = bytes_per_particle(scene, counts) * static_cast<double>(counts.own);
+  if (!scene.gravity)
+    return bytes;
+  const GravitySettings gravity = chosen_for(counts.all, *scene.gravity);
+  bytes += gathered_memory(gravity, counts);
+  // each rank has the whole mesh of `axisymmetric`, and its part of the others
+  const std::size_t meshed = gravity.solver == Solver::axisymmetric ? counts.all : counts.own;
+  if (scene.start_from || scene.particles.count == 0 || meshed == 0)
+    return bytes;
+  const double factor = std::sqrt(static_cast<double>(meshed) / static_cast<double>(scene.particles.count));
+  return bytes + mesh_memory(scene, gravity, meshed, factor * scene.size_x, factor * scene.size_y);
 }
 
 } // namespace
@@ -101,18 +127,24 @@ Derived derive(const Scene& scene) {
   d.midplane_filling =
       std::min(scene::largest_filling, midplane_filling(scene.bunched_optical_depth(), particles.layer_sizes(),
                                                         particles.velocity_dispersion, scene.planet.frequencies.nu));
-  d.memory_mb = 1e-6 * (cost::program_bytes + run_bytes(scene, particles.count));
+  d.memory_mb = 1e-6 * (cost::program_bytes + run_bytes(scene, {particles.count, particles.count}));
   return d;
 }
 
-void require_memory_for(const Scene& scene, std::size_t count) {
-  require_memory(run_bytes(scene, count),
-                 fmt::format("a run of {} particles", format_number(static_cast<double>(count))),
+double rank_memory(const Scene& scene, std::size_t own, std::size_t all) {
+  assert(own <= all);
+  return run_bytes(scene, {own, all});
+}
+
+void require_memory_for(const Scene& scene, std::size_t own, std::size_t all) {
+  const std::string part =
+      own < all ? fmt::format(" on a rank that owns {}", format_number(static_cast<double>(own))) : "";
+  require_memory(rank_memory(scene, own, all),
+                 fmt::format("a run of {} particles{}", format_number(static_cast<double>(all)), part),
                  "take fewer particles, a coarser mesh, or a machine with more memory");
 }
 
 std::string in_words(const GravitySettings& gravity) {
-  using Solver = GravitySettings::Solver;
   switch (gravity.solver) {
   case Solver::direct:
     return "direct sum";

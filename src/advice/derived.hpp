@@ -24,8 +24,17 @@ struct Derived {
 
 Derived derive(const Scene& scene);
 
-/// Throws UsageError if a run of `count` particles, in a patch like the scene's, needs more memory than is available.
-void require_memory_for(const Scene& scene, std::size_t count);
+/// Returns the estimated peak memory, without the program, of a process that owns `own` of `all` particles of a run in
+/// a patch like the scene's, bytes. One process owns all.
+double rank_memory(const Scene& scene, std::size_t own, std::size_t all);
+
+/// Throws UsageError if that is more than is available.
+void require_memory_for(const Scene& scene, std::size_t own, std::size_t all);
+
+/// The same for `count` particles on one process.
+inline void require_memory_for(const Scene& scene, std::size_t count) {
+  require_memory_for(scene, count, count);
+}
 
 /// Returns a description of the solver: "tree, opening angle 0.6".
 std::string in_words(const GravitySettings& gravity);

@@ -91,7 +91,7 @@ void require_one_build(const Communicator& ranks) {
 // particle than one process, whose arrays are larger (docs/dev/ranks.md). A variable of the user's stays.
 void keep_little_free_memory() {
 #ifdef __GLIBC__
-  constexpr int longest_in_heap = 2 << 20, longest_free_end = 8 << 20; // bytes
+  constexpr int longest_in_heap = 1 << 20, longest_free_end = 8 << 20; // bytes
   if (std::getenv("MALLOC_MMAP_THRESHOLD_") || std::getenv("GLIBC_TUNABLES"))
     return;
   mallopt(M_MMAP_THRESHOLD, longest_in_heap);

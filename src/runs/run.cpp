@@ -182,8 +182,10 @@ Begun first_simulation(const Scene& scene, const RunOptions& options, const RunR
   try {
     const Interruptible start(ranks.distributed() ? never : requests.stop);
     if (!scene.start_from)
-      ranks.together(
-          [&] { advice::require_memory_for(scene, (scene.particles.count + ranks.size() - 1) / ranks.size()); });
+      ranks.together([&] {
+        const std::size_t all = scene.particles.count;
+        advice::require_memory_for(scene, (all + ranks.size() - 1) / ranks.size(), all);
+      });
     const Patch patch = initial_patch(scene, progress, ranks);
     const scene::PatchScale scale = ranks.broadcast(initial_conditions::scale_of(patch, ranks));
     const Scene decided = decided_by(scene, scale);

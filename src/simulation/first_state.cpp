@@ -24,8 +24,9 @@ void require_room(const ShearingBox& box, double largest, const std::string& nam
 
 // Collective.
 void require_fit(const Scene& scene, const Patch& start, const std::string& name, const Communicator& ranks) {
+  const std::uint64_t all = ranks.sum(start.size());
   ranks.together([&] {
-    advice::require_memory_for(scene, start.size());
+    advice::require_memory_for(scene, start.size(), all);
     require_sound(start);
     if (!ranks.distributed())
       cells::require_no_overlap(start, name);

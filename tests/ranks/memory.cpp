@@ -20,7 +20,8 @@ namespace {
 
 constexpr std::size_t count = 600000;
 constexpr double piece = 16.0 * (1 << 20); // bytes
-constexpr double max_memory = 750.0;       // bytes per own particle; bodies and ids of all ranks would add 288
+constexpr double max_memory =
+    560.0; // bytes per own particle; bodies and ids of all ranks would add 288, kept memory 200
 
 Scene many_particles() {
   return parse_scene(R"(

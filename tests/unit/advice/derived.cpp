@@ -58,6 +58,38 @@ end = 1.0
   CHECK(fine - coarse < 1e-6 * 16 * (0x1p21 + 64 * 20000));
 }
 
+TEST_CASE("a rank's memory is that of its particles, and of all for solvers that gather them") {
+  const auto scene_with = [](const std::string& solver) {
+    return parse_scene(R"(
+[planet]
+preset = "saturn-a-ring"
+[box]
+size = [1000, 1000]
+[particles]
+count = 100000
+density = 600.0
+sizes = { law = "equal", radius = 1.0 }
+[time]
+end = 1.0
+[gravity]
+solver = ')" + solver + "'\n",
+                       "scene");
+  };
+  constexpr std::size_t all = 100000, quarter = all / 4;
+  const auto whole = [&](const std::string& solver) { return rank_memory(scene_with(solver), all, all); };
+  const auto part = [&](const std::string& solver) { return rank_memory(scene_with(solver), quarter, all); };
+  CHECK(1e-6 * whole("tree") + 33.0 == doctest::Approx(derive(scene_with("tree")).memory_mb));
+  // a tree of all particles needs some 200 bytes each on every rank; measured on four: docs/dev/ranks.md
+  CHECK(part("tree") > 380.0 * all);
+  CHECK(part("tree") < 500.0 * all);
+  CHECK(part("direct") > 0.25 * whole("direct") + 40.0 * all);
+  CHECK(part("fft") < 0.3 * whole("fft"));
+  CHECK(part("axisymmetric") > 0.25 * whole("axisymmetric"));
+  // `auto` sums few particles directly: what counts is the number of all
+  constexpr std::size_t few = 10;
+  CHECK(rank_memory(scene_with("auto"), few, all) == rank_memory(scene_with("fft"), few, all));
+}
+
 TEST_CASE("the equilibrium example has about 1500 particles and no gravity") {
   const Scene scene = load_scene(KEELER_SOURCE_DIR "/examples/equilibrium/scene.toml");
   CHECK(std::fabs(static_cast<double>(scene.particles.count) - 1500) < 20);
