@@ -20,8 +20,8 @@ namespace {
 
 constexpr std::size_t count = 600000;
 constexpr double piece = 16.0 * (1 << 20); // bytes
-constexpr double max_memory =
-    560.0; // bytes per own particle; bodies and ids of all ranks would add 288, kept memory 200
+// bytes per own particle; bodies and ids of all ranks would add 288, and freed blocks that stay in the heap 200 on one
+constexpr double max_memory = 560.0;
 
 Scene many_particles() {
   return parse_scene(R"(

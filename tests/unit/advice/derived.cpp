@@ -72,7 +72,8 @@ sizes = { law = "equal", radius = 1.0 }
 [time]
 end = 1.0
 [gravity]
-solver = ')" + solver + "'\n",
+solver = ')" + solver + "'\n" +
+                           (solver == "axisymmetric" ? "shortest_wavelength = 1e-3\n" : ""),
                        "scene");
   };
   constexpr std::size_t all = 100000, quarter = all / 4;
