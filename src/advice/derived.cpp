@@ -31,7 +31,7 @@ constexpr double tiled_bytes = 80.0; // copies of the particles in the order of 
 
 using Solver = GravitySettings::Solver;
 
-// The particles that this process owns, and those of all ranks.
+// The numbers of particles: of this process, and of all ranks.
 struct Counts {
   std::size_t own, all;
 
@@ -42,7 +42,7 @@ bool is_pairwise(Solver solver) {
   return solver == Solver::tree || solver == Solver::direct;
 }
 
-// Returns the bytes of the state, the drift and the solver. Without those of particles that a solver gathers.
+// Returns the bytes of the state, the drift and the solver. Without what a solver gathers.
 double bytes_per_particle(const Scene& scene, const Counts& counts) {
   const double state = sizeof(Body) + sizeof(std::uint64_t);
   const double output_copy = 2 * sizeof(Vec3) + 2 * sizeof(double) + sizeof(std::uint64_t); // a Patch

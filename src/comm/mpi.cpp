@@ -87,8 +87,8 @@ void require_one_build(const Communicator& ranks) {
 }
 
 // Returns free blocks to the system early. By default blocks of up to 32 MiB stay in the heap when they have been
-// freed. A rank's arrays are of that size and change it all the time, which makes gaps: ranks held 40 % more memory per
-// particle than one process, whose arrays are larger (docs/dev/ranks.md). A variable of the user's stays.
+// freed. A rank's arrays are of that size and change it all the time, which makes gaps: ranks held half as much again
+// per particle than one process, whose arrays are larger (docs/dev/ranks.md). A variable of the user's stays.
 void keep_little_free_memory() {
 #ifdef __GLIBC__
   constexpr int longest_in_heap = 1 << 20, longest_free_end = 8 << 20; // bytes
