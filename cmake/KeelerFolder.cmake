@@ -70,11 +70,11 @@ function(link_headers from to)
 endfunction()
 
 # Compiles a target with fewer optimisations, in less time: nothing in it runs once a particle and step. With sanitizers, whose
-# checks must be optimised too, the time that -O0 saves is more than what tests then lose, but where tests read thousands of scenes or
-# measure loops.
+# checks must be optimised too, -O0 saves more time than tests then lose, though other folders may be linked with its copies of inline
+# functions. bench measures loops.
 function(keeler_cold target)
   if(KEELER_SANITIZE)
-    if(NOT target MATCHES "^keeler_(config|scene|bench)$")
+    if(NOT target MATCHES "^keeler_bench$")
       target_compile_options(${target} PRIVATE -O0)
     endif()
   else()
