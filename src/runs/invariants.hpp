@@ -62,8 +62,8 @@ std::string fault_of_sums(const BeforeStep& before, const simulation::Simulation
                           const Frequencies& frequencies, const Communicator& ranks = {});
 
 /// Compares the self-gravity of the last kick on a random sample of particles with the sum over all pairs and images:
-/// the rms error may be at most forces_factor times the solver's tolerance, or a larger sample decides. Collective. Precondition: the step ended
-/// with a kick.
+/// the rms error may be at most forces_factor times the solver's tolerance, or a larger sample decides. Collective.
+/// Precondition: the step ended with a kick.
 std::string fault_of_forces(const Scene& scene, const forces::Boundary& boundary,
                             const simulation::SimulationState& state);
 inline constexpr double forces_factor = 4.0;
