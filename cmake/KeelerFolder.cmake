@@ -69,15 +69,7 @@ function(link_headers from to)
   endforeach()
 endfunction()
 
-# Compiles a target with fewer optimisations, in less time: nothing in it runs once a particle and step. With sanitizers, whose
-# checks must be optimised too, -O0 saves more time than tests then lose, though other folders may be linked with its copies of inline
-# functions. bench measures loops.
+# Compiles a target with fewer optimisations, in less time: nothing in it runs once a particle and step.
 function(keeler_cold target)
-  if(KEELER_SANITIZE)
-    if(NOT target MATCHES "^keeler_bench$")
-      target_compile_options(${target} PRIVATE -O0)
-    endif()
-  else()
-    target_compile_options(${target} PRIVATE "$<$<CONFIG:Release>:-O1>")
-  endif()
+  target_compile_options(${target} PRIVATE "$<$<CONFIG:Release>:-O1>")
 endfunction()

@@ -1,7 +1,6 @@
 #include <keeler/light/photometry.hpp>
 
 #include "chandrasekhar.hpp"
-#include "draws.hpp"
 #include "states.hpp"
 
 #include <keeler/core/error.hpp>
@@ -51,9 +50,7 @@ TEST_CASE("angles of a sight") {
   CHECK_THROWS_AS(sight_at_phase({0.2, 0.0}, 0.4, 3.0), UsageError);
 }
 
-// Of numbers that sanitizers know nothing of, other cases have other ones by the same code.
-TEST_CASE("a thin random layer scatters once as Chandrasekhar's single scattering, from both faces" *
-          doctest::skip(test::sanitized)) {
+TEST_CASE("a thin random layer scatters once as Chandrasekhar's single scattering, from both faces") {
   // Filling factor 0.004. The number of spheres in the box is finite: 60000 make the depth along a ray uncertain by
   // less than 0.4 %.
   const SharedLaw law = law_named("callisto", 0.6);
@@ -107,7 +104,7 @@ TEST_CASE("the equations of X and Y conserve light, and have Chandrasekhar's val
     CHECK(test::IsotropicLayer(1.0, depth, {0.777, 0.3}).leaves(0, depth) == doctest::Approx(1.0).epsilon(2e-3));
 }
 
-TEST_CASE("what goes into a dense layer without absorption comes out" * doctest::skip(test::sanitized)) {
+TEST_CASE("what goes into a dense layer without absorption comes out") {
   // By reciprocity of surfaces the albedo of the patch for the observer's direction is the mean weight of the paths
   // that leave: with ϖ = 1 an isotropic sky of I/F = 1 (π I = π F) looks, through the patch, everywhere as bright as
   // the sky. Here: the plane albedo plus both transmissions by integrating I/F over the Sun's directions.
