@@ -72,7 +72,11 @@ public:
   JournaledOrbits orbits(const ContactCounter& counter) {
     return JournaledOrbits(step_, history_, broad_phase_, counter, journal_);
   }
-  PathJournal& journal() { return journal_; }
+  /// Notes a step that was carried out in domains.
+  void note(OptimisticLoop& domains) {
+    domains_ = &domains;
+    journal_.note_domains(domains, outcome_.dirty);
+  }
 
   /// Exchanges reports of all ghosts' paths. Returns true if anything is new to one of the ranks.
   bool exchange_reports() {
@@ -112,6 +116,8 @@ public:
   /// Restores everything as at the start of the step.
   void undo() {
     history_.begin_step(step_.particles.size(), step_.begin);
+    if (domains_)
+      std::exchange(domains_, nullptr)->undo(step_, history_, broad_phase_.lists());
     journal_.undo(broad_phase_);
     outcome_.clear_contacts();
     outcome_.gave_up = gave_up_first_;
@@ -134,39 +140,47 @@ public:
     tally.slow += counts[1];
     tally.unresolved += counts[2];
     ++ghosts_.steps;
-    journal_.visit_hit([&](std::uint32_t particle) {
-      if (particle < ghosts_.own)
-        ghosts_.contacts[particle] = static_cast<std::uint16_t>(
-            std::min<std::uint32_t>(0xffff, ghosts_.contacts[particle] + history_.event_count(particle)));
-    });
+    for (std::size_t i = 0; i < ghosts_.own; ++i)
+      ghosts_.contacts[i] =
+          static_cast<std::uint16_t>(std::min<std::uint32_t>(0xffff, ghosts_.contacts[i] + history_.event_count(i)));
   }
 
 private:
-  // Returns the reports of own particles that another rank has as ghosts.
+  static PathReport report_of(std::uint64_t ghost, const PathChange& change) {
+    return {ghost, change.time, change.elements, change.spin};
+  }
+
+  // Returns the reports of own particles that another rank has as ghosts, `lent` in ascending order.
   std::vector<PathReport> reports_of(const std::vector<std::uint32_t>& lent) const {
-    std::vector<PathReport> rows;
-    const std::vector<PathChange>& changes = journal_.changes();
-    auto change = changes.begin();
     assert(std::is_sorted(lent.begin(), lent.end()));
-    for (std::uint64_t number = 0; number < lent.size(); ++number) {
-      change = std::lower_bound(change, changes.end(), lent[number],
-                                [](const PathChange& c, std::uint32_t particle) { return c.particle < particle; });
-      for (; change != changes.end() && change->particle == lent[number]; ++change)
-        rows.push_back({number, change->time, change->after, change->spin_after});
+    std::vector<PathReport> rows;
+    std::size_t number = 0;
+    for (const PathChange& change : journal_.changes()) { // by particle
+      while (number < lent.size() && lent[number] < change.particle)
+        ++number;
+      if (number == lent.size())
+        break;
+      if (lent[number] == change.particle)
+        rows.push_back(report_of(number, change));
     }
     return rows;
   }
 
   // True if each near ghost went here as its owner reports.
   bool near_ghosts_agree() const {
-    const auto is_far = [&](const PathReport& report) { return !ghosts_.near[report.ghost]; };
-    std::vector<PathReport> theirs = received_, here;
-    std::erase_if(theirs, is_far);
-    for (const PathChange& change : journal_.changes())
-      if (change.particle >= ghosts_.own)
-        here.push_back({change.particle - ghosts_.own, change.time, change.after, change.spin_after});
-    std::erase_if(here, is_far);
-    return packed(theirs) == packed(here);
+    const auto is_near = [&](const PathReport& report) { return ghosts_.near[report.ghost]; };
+    auto theirs = std::find_if(received_.begin(), received_.end(), is_near);
+    for (const PathChange& change : journal_.changes()) { // by particle, as theirs
+      if (change.particle < ghosts_.own)
+        continue;
+      const PathReport here = report_of(change.particle - ghosts_.own, change);
+      if (!is_near(here))
+        continue;
+      if (theirs == received_.end() || std::memcmp(&*theirs, &here, sizeof here) != 0)
+        return false;
+      theirs = std::find_if(theirs + 1, received_.end(), is_near);
+    }
+    return theirs == received_.end();
   }
 
   void follow_reports(const std::vector<Event>& first, EventQueue& events, const ContactCounter& counter) {
@@ -201,11 +215,12 @@ private:
   decomposition::GhostLayer& ghosts_;
   const Communicator& ranks_;
   PathJournal journal_;
-  std::uint64_t gave_up_first_;      // of the searches before the first contact
-  comm::Parcels sent_;               // reports, to each rank
-  std::vector<PathReport> received_; // of the ghosts, in their order
-  CollisionTally tally_;             // of the last attempt
-  std::exception_ptr failure_;       // in it
+  OptimisticLoop* domains_ = nullptr; // that have carried out the present attempt
+  std::uint64_t gave_up_first_;       // of the searches before the first contact
+  comm::Parcels sent_;                // reports, to each rank
+  std::vector<PathReport> received_;  // of the ghosts, in their order
+  CollisionTally tally_;              // of the last attempt
+  std::exception_ptr failure_;        // in it
 };
 
 } // namespace
@@ -228,7 +243,7 @@ bool DriftEngine::collide_distributed(Particles& particles, decomposition::Ghost
   distributed.attempt([&](const ContactCounter& counter) {
     const Stopwatch stopwatch(costs_.events);
     if (carry_out_in_domains(step, first, counter)) {
-      distributed.journal().note_domains(optimistic_, outcome_.dirty);
+      distributed.note(optimistic_);
     } else {
       JournaledOrbits orbits = distributed.orbits(counter);
       carry_out_in_sequence(step, first, orbits);

@@ -213,7 +213,11 @@ std::vector<Event> DriftEngine::solve(const StepContext& step, std::size_t own) 
   else
     parallel_for(found.size(), search_block, 1);
   throw_if_interrupted();
+  std::size_t events = 0;
+  for (const FirstContacts& f : found)
+    events += f.events.size();
   std::vector<Event> all;
+  all.reserve(events);
   for (const FirstContacts& f : found) {
     all.insert(all.end(), f.events.begin(), f.events.end());
     outcome_.gave_up += f.gave_up;

@@ -29,6 +29,8 @@
 #include "optimistic_domain.hpp"
 #include "step_context.hpp"
 
+#include <cassert>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -61,10 +63,18 @@ public:
   /// Calls visit(end of the path, its elements, spin) for each change of a particle, the last one first.
   template<class Visit>
   void visit_changes(const StepHistory& history, std::uint32_t particle, const Visit& visit) const;
+  /// Calls visit(change) for the changes of all contacts that were not rolled back, as they lie in memory.
+  template<class Visit> void visit_all_changes(const Visit& visit) const;
   /// Appends each particle that was hit; more than once if it was rolled back and hit again.
   void append_dirty(std::vector<std::uint32_t>& dirty) const;
   /// Returns the largest number of partners that one particle had in one search.
   std::uint64_t max_partners() const;
+
+  /// Undoes the last carry_out() that returned true, and with it its results: everything is as at the start of the
+  /// step.
+  void undo(const StepContext& step, StepHistory& history, NeighbourLists& lists) {
+    roll_back_all({step, history, lists});
+  }
 
   /// Releases the memory of the last carry_out() and with it its results.
   void release();
@@ -106,6 +116,16 @@ void OptimisticLoop::visit_changes(const StepHistory& history, std::uint32_t par
   const ChangeLog& log = state_.log;
   for (ChangeNumber number = log.newest(history, particle); number; number = log[number].earlier)
     visit(log[number].time, log[number].ended, log.spin_before(number));
+}
+
+template<class Visit> void OptimisticLoop::visit_all_changes(const Visit& visit) const {
+  for (std::size_t d = 0; d < state_.domains.size(); ++d) {
+    const DomainContacts& contacts = state_.domains[d].contacts;
+    assert(state_.log.size(d) == 2 * contacts.size());
+    for (std::size_t k = 0; k < state_.log.size(d); ++k)
+      if (!contacts.is_rolled_back(k / 2))
+        visit(state_.log[ChangeLog::number_of(d, k)]);
+  }
 }
 
 } // namespace keeler::collision

@@ -12,20 +12,21 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace keeler::collision {
 
-/// The end of a particle's path and the begin of the next one. Spins of smooth particles are zero.
+/// The end of a particle's path, and what it changed to. Spins of smooth particles are zero.
 struct PathChange {
   std::uint32_t particle;
-  double time; ///< of the end
-  Elements before, after;
-  Vec3 spin_before, spin_after;
+  double time;
+  Elements elements; ///< after the change; until PathJournal::complete(), before it
+  Vec3 spin;         ///< likewise
 };
 
-/// What a distributed step notes of its changes: the state before it, to undo it; the paths of particles that two ranks
-/// have; and whether an own particle has gone beyond the margin.
+/// What a distributed step notes of its changes: the state before it, to undo it where domains do not; the paths of
+/// particles that two ranks have; and whether an own particle has gone beyond the margin.
 class PathJournal {
 public:
   PathJournal(const StepContext& step, const StepHistory& history, const decomposition::GhostLayer& ghosts)
@@ -38,45 +39,53 @@ public:
     if (history_.event_count(i) == 0)
       beginnings_.push_back({i, before, spin});
     if (ghosts_.on_two_ranks(i))
-      changes_.push_back({i, time, before, {}, spin, Vec3::Zero()});
+      changes_.push_back({i, time, before, spin});
     note_path(i, after);
   }
 
-  /// Notes all changes of a step that was carried out in domains.
-  void note_domains(const OptimisticLoop& domains, std::vector<std::uint32_t> dirty) {
-    std::sort(dirty.begin(), dirty.end());
-    dirty.erase(std::unique(dirty.begin(), dirty.end()), dirty.end());
+  /// Notes all changes of a step that was carried out in domains, which can undo it themselves. `dirty`: all particles
+  /// that were hit.
+  void note_domains(const OptimisticLoop& domains, std::span<const std::uint32_t> dirty) {
+    domains.visit_all_changes([&](const Change& change) {
+      if (change.earlier) // the path began in this step
+        note_path(change.particle, change.ended);
+    });
+    std::vector<std::uint32_t> with_copies;
     for (const std::uint32_t i : dirty) {
-      const bool has_copies = ghosts_.on_two_ranks(i);
+      note_path(i, step_.particles.bodies[i].elements);
+      if (ghosts_.on_two_ranks(i))
+        with_copies.push_back(i);
+    }
+    std::sort(with_copies.begin(), with_copies.end());
+    with_copies.erase(std::unique(with_copies.begin(), with_copies.end()), with_copies.end());
+    changes_.reserve(changes_.size() + 2 * with_copies.size()); // nearly all are hit once or twice
+    for (const std::uint32_t i : with_copies) {
       const auto changes_before = static_cast<std::ptrdiff_t>(changes_.size());
-      Beginning first{i, step_.particles.bodies[i].elements, Vec3::Zero()};
       domains.visit_changes(history_, i, [&](double time, const Elements& before, const Vec3& spin) { // last one first
-        note_path(i, first.elements);
-        if (has_copies)
-          changes_.push_back({i, time, before, {}, spin, Vec3::Zero()});
-        first.elements = before;
-        first.spin = spin;
+        changes_.push_back({i, time, before, spin});
       });
-      beginnings_.push_back(first);
       std::reverse(changes_.begin() + changes_before, changes_.end());
     }
   }
 
   /// Sorts the changes by particle and time when all contacts are carried out, and fills in what paths changed to.
   void complete() {
-    std::stable_sort(changes_.begin(), changes_.end(), [](const PathChange& a, const PathChange& b) {
+    const auto comes_first = [](const PathChange& a, const PathChange& b) {
       return a.particle != b.particle ? a.particle < b.particle : a.time < b.time;
-    });
+    };
+    if (!std::is_sorted(changes_.begin(), changes_.end(), comes_first)) // as domains have left them
+      std::stable_sort(changes_.begin(), changes_.end(), comes_first);
     for (std::size_t k = 0; k < changes_.size(); ++k) {
       PathChange& change = changes_[k];
       const bool last = k + 1 == changes_.size() || changes_[k + 1].particle != change.particle;
-      change.after = last ? step_.particles.bodies[change.particle].elements : changes_[k + 1].before;
+      change.elements = last ? step_.particles.bodies[change.particle].elements : changes_[k + 1].elements;
       if (step_.particles.rough)
-        change.spin_after = last ? step_.particles.spins[change.particle] : changes_[k + 1].spin_before;
+        change.spin = last ? step_.particles.spins[change.particle] : changes_[k + 1].spin;
     }
   }
 
-  /// Restores all particles as at the start of the step. Precondition: `history` has begun the step again.
+  /// Restores all particles that note_change() noted as at the start of the step, and forgets the step. Precondition:
+  /// the history has begun it again.
   void undo(BroadPhase& broad_phase) {
     for (const auto& [i, elements, spin] : beginnings_) {
       assert(history_.event_count(i) == 0);
@@ -92,11 +101,6 @@ public:
   }
 
   const std::vector<PathChange>& changes() const { return changes_; }
-  /// Calls visit(particle) for each particle that was hit.
-  template<class Visit> void visit_hit(const Visit& visit) const {
-    for (const Beginning& beginning : beginnings_)
-      visit(beginning.particle);
-  }
   /// True if an own particle may have gone farther than the margin within which the ghosts suffice.
   bool has_strayed() const { return has_strayed_; }
 
@@ -114,7 +118,7 @@ private:
   const StepContext& step_;
   const StepHistory& history_;
   const decomposition::GhostLayer& ghosts_;
-  std::vector<Beginning> beginnings_; // one per particle that was hit
+  std::vector<Beginning> beginnings_; // one per particle that note_change() noted
   std::vector<PathChange> changes_;
   bool has_strayed_ = false;
 };

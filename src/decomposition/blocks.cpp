@@ -260,12 +260,14 @@ void Blocks::add_ghosts(Particles& particles) {
   assert(is_built_ && particles.size() == ghosts_.own);
   std::vector<std::vector<Elements>> paths(ranks_.size());
   std::vector<std::vector<Vec3>> spins(ranks_.size());
-  for (std::size_t rank = 0; rank < ranks_.size(); ++rank)
+  for (std::size_t rank = 0; rank < ranks_.size(); ++rank) {
+    paths[rank].reserve(ghosts_.sent[rank].size());
     for (const std::uint32_t k : ghosts_.sent[rank]) {
       paths[rank].push_back(particles.bodies[k].elements);
       if (particles.rough)
         spins[rank].push_back(particles.spins[k]);
     }
+  }
   std::size_t ghost = 0;
   for (const std::vector<Elements>& from_rank : ranks_.exchange(paths, ghosts_.partners))
     for (const Elements& path : from_rank)
@@ -286,9 +288,11 @@ void Blocks::add_ghosts(Particles& particles) {
 void Blocks::add_ghosts(std::vector<Vec3>& row) const {
   assert(is_built_ && row.size() == ghosts_.own);
   std::vector<std::vector<Vec3>> sent(ranks_.size());
-  for (std::size_t rank = 0; rank < ranks_.size(); ++rank)
+  for (std::size_t rank = 0; rank < ranks_.size(); ++rank) {
+    sent[rank].reserve(ghosts_.sent[rank].size());
     for (const std::uint32_t k : ghosts_.sent[rank])
       sent[rank].push_back(row[k]);
+  }
   row.reserve(ghosts_.own + ghosts_.ghosts());
   for (const std::vector<Vec3>& from_rank : ranks_.exchange(sent, ghosts_.partners))
     row.insert(row.end(), from_rank.begin(), from_rank.end());

@@ -22,12 +22,22 @@ using test::Scenario;
 
 namespace {
 
+// Lets a drift carry out its steps in so many domains; 0: as it chooses, which is in sequence for so few particles.
+struct Domains final : collision::DriftObserver {
+  explicit Domains(std::size_t how_many) : count(how_many) {}
+  bool wants_events() const override { return false; }
+  std::size_t wants_domains() const override { return count; }
+  std::size_t count;
+};
+
 // A rank's part of a ring.
 class Part {
 public:
-  Part(const Ring& ring, const collision::CollisionSettings& settings, const decomposition::Blocks::Layout& layout)
-      : own(ring.particles), blocks(keeler_test::launched(), ring.box, ring.frequencies, layout),
+  Part(const Ring& ring, const collision::CollisionSettings& settings, const decomposition::Blocks::Layout& layout,
+       std::size_t in_domains = 0)
+      : domains(in_domains), own(ring.particles), blocks(keeler_test::launched(), ring.box, ring.frequencies, layout),
         drift(settings, ring.frequencies, test::omega, ring.step), step_(ring.step) {
+    drift.observe(&domains);
     if (!keeler_test::launched().is_root())
       own.bodies.clear(), own.ids.clear(), own.spins.clear();
     blocks.distribute({own, {}});
@@ -49,6 +59,7 @@ public:
     }
   }
 
+  Domains domains;
   Particles own;
   decomposition::Blocks blocks;
   collision::DriftPhase drift;
@@ -92,12 +103,13 @@ std::vector<std::size_t> some_strips() {
   return {std::max<std::size_t>(1, ranks / 2)};
 }
 
-// Makes `steps` steps of a scenario's patch, which all ranks generate.
-Walk walk(const Scenario& s, std::uint64_t seed, int steps, const decomposition::Blocks::Layout& layout = {}) {
+// Makes `steps` steps of a scenario's patch, which all ranks generate, in so many domains.
+Walk walk(const Scenario& s, std::uint64_t seed, int steps, const decomposition::Blocks::Layout& layout = {},
+          std::size_t domains = 0) {
   const Communicator& ranks = keeler_test::launched();
   const collision::CollisionSettings settings = test::settings_of(s);
   Ring ring(test::make_patch(s, seed), settings, s.step);
-  Part part(ring, settings, layout);
+  Part part(ring, settings, layout, domains);
   test::PlainDrift plain(settings, ring.frequencies, test::omega, ring.step);
   Walk walked;
   for (int k = 0; k < steps; ++k) {
@@ -142,26 +154,34 @@ TEST_CASE("ranks: a step is repeated if ghosts leave their owners' paths, with t
   const std::size_t ranks = keeler_test::launched().size();
   for (const std::size_t strips : some_strips()) {
     const bool is_large = strips > 0;
-    std::uint64_t again = 0, rounds = 0, strayed = 0;
+    std::uint64_t again = 0, rounds = 0, strayed = 0, deferred = 0, again_in_domains = 0;
     for (const double step : {2e-3, 1e-2, 4e-2})
       for (const double growth : {1.0, 1.5}) {
         if (is_large && (growth > 1.0 || step > 1e-2))
           continue;
-        CAPTURE(step);
-        Scenario s;
-        s.step = two_pi * step;
-        s.count = is_large ? 400 : 200;
-        s.filling = 0.45, s.optical_depth = is_large ? 0.7 : 1.0;
-        const Walk walked = walk(s, 7, 25, {.growth = growth, .rows_beyond = 0.0, .strips = is_large ? strips : ranks});
-        again += walked.costs.repeated_steps;
-        rounds += walked.costs.repeated_rounds;
-        strayed += walked.costs.steps - 25;
+        for (const std::size_t domains : {0, 4}) {
+          CAPTURE(step);
+          CAPTURE(domains);
+          Scenario s;
+          s.step = two_pi * step;
+          s.count = is_large ? 400 : 200;
+          s.filling = 0.45, s.optical_depth = is_large ? 0.7 : 1.0;
+          const Walk walked =
+              walk(s, 7, 25, {.growth = growth, .rows_beyond = 0.0, .strips = is_large ? strips : ranks}, domains);
+          again += walked.costs.repeated_steps;
+          again_in_domains += domains > 0 ? walked.costs.repeated_steps : 0;
+          rounds += walked.costs.repeated_rounds;
+          strayed += walked.costs.steps - 25;
+          deferred += walked.costs.deferred;
+        }
       }
     MESSAGE(strips, " strips: ", again, " steps repeated in ", rounds, " rounds, ", strayed,
             " with wider ghost layers");
     if (ranks == 1)
       continue;
     CHECK(again >= (is_large ? 1 : 10));
+    CHECK(again_in_domains >= (is_large ? 1 : 5));
+    CHECK(keeler_test::launched().sum(deferred) > 0);
     CHECK(rounds >= again);
     CHECK((is_large || strayed >= 1));
   }
@@ -188,6 +208,7 @@ TEST_CASE(
     s.friction = {.tangential_restitution = 0.5};
   }
   CHECK(walk(s, 3, 40).contacts > 20);
+  CHECK(walk(s, 3, 20, {}, 3).contacts > 10);
   CHECK(walk(s, 4, 20, {.growth = 2.0, .rows_beyond = 0.0, .strips = some_strips().back()}).contacts > 10);
 }
 
