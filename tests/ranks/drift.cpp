@@ -22,21 +22,14 @@ using test::Scenario;
 
 namespace {
 
-// Lets a drift carry out its steps in so many domains; 0: as it chooses, which is in sequence for so few particles.
-struct Domains final : collision::DriftObserver {
-  explicit Domains(std::size_t how_many) : count(how_many) {}
-  bool wants_events() const override { return false; }
-  std::size_t wants_domains() const override { return count; }
-  std::size_t count;
-};
-
 // A rank's part of a ring.
 class Part {
 public:
   Part(const Ring& ring, const collision::CollisionSettings& settings, const decomposition::Blocks::Layout& layout,
        std::size_t in_domains = 0)
-      : domains(in_domains), own(ring.particles), blocks(keeler_test::launched(), ring.box, ring.frequencies, layout),
+      : own(ring.particles), blocks(keeler_test::launched(), ring.box, ring.frequencies, layout),
         drift(settings, ring.frequencies, test::omega, ring.step), step_(ring.step) {
+    domains.count = in_domains;
     drift.observe(&domains);
     if (!keeler_test::launched().is_root())
       own.bodies.clear(), own.ids.clear(), own.spins.clear();
@@ -59,7 +52,7 @@ public:
     }
   }
 
-  Domains domains;
+  test::InDomains domains;
   Particles own;
   decomposition::Blocks blocks;
   collision::DriftPhase drift;
@@ -103,7 +96,7 @@ std::vector<std::size_t> some_strips() {
   return {std::max<std::size_t>(1, ranks / 2)};
 }
 
-// Makes `steps` steps of a scenario's patch, which all ranks generate, in so many domains.
+// Makes `steps` steps of a scenario's patch, which all ranks generate, in so many domains; 0: one for each thread.
 Walk walk(const Scenario& s, std::uint64_t seed, int steps, const decomposition::Blocks::Layout& layout = {},
           std::size_t domains = 0) {
   const Communicator& ranks = keeler_test::launched();

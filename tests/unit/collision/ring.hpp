@@ -13,10 +13,11 @@
 
 namespace keeler::test {
 
-/// Divides the contacts among all threads, even if they are few.
+/// Carries out the contacts in so many domains, even if they are few.
 struct InDomains final : collision::DriftObserver {
   bool wants_events() const override { return false; }
-  std::size_t wants_domains() const override { return static_cast<std::size_t>(threads()); }
+  std::size_t wants_domains() const override { return count > 0 ? count : static_cast<std::size_t>(threads()); }
+  std::size_t count = 0; ///< 0: one for each thread
 };
 
 struct Ring {
