@@ -20,6 +20,10 @@ if(KEELER_SANITIZE)
     target_compile_options(keeler_flags INTERFACE -Wno-maybe-uninitialized)
   else() # nothing becomes vectors there, which is no fault
     target_compile_options(keeler_flags INTERFACE -Wno-pass-failed)
+    if(KEELER_SANITIZE MATCHES "undefined") # by a path from the build folder, so that ccache hits in any copy
+      file(RELATIVE_PATH ignored "${PROJECT_BINARY_DIR}" "${CMAKE_CURRENT_LIST_DIR}/undefined_ignore.txt")
+      add_compile_options("-fsanitize-ignorelist=${ignored}")
+    endif()
   endif()
   # As a library, which the Python package and its interpreter can share.
   if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND KEELER_SANITIZE MATCHES "^address")

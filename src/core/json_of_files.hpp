@@ -1,4 +1,5 @@
-// Writes and reads JSON, also files of unknown origin. Json is a type of the library nlohmann_json.
+// Writes and reads JSON, also files of unknown origin. Json is nlohmann::json or nlohmann::ordered_json: the library's
+// parsers and writers are compiled for these two, once.
 #pragma once
 
 #include <keeler/core/error.hpp>
@@ -9,22 +10,11 @@
 namespace keeler {
 
 /// Returns the text of JSON. Invalid UTF-8, which file names may contain, becomes U+FFFD.
-template<class Json> std::string json_text(const Json& json, int indent = -1) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
-}
+template<class Json> std::string json_text(const Json& json, int indent = -1);
 
 /// Parses a text. Returns a discarded value if it is not JSON, or nests deeper than any file of Keeler: code that
 /// copies or prints JSON recurses.
-template<class Json> Json json_of(const std::string& text) {
-  constexpr int max_depth = 32;
-  bool is_too_deep = false;
-  const auto note_depth = [&](int depth, typename Json::parse_event_t, const Json&) {
-    is_too_deep = is_too_deep || depth > max_depth;
-    return !is_too_deep;
-  };
-  Json json = Json::parse(text, note_depth, false);
-  return is_too_deep ? Json(Json::value_t::discarded) : json;
-}
+template<class Json> Json json_of(const std::string& text);
 
 /// Returns use(), which reads JSON from a file or the files of a folder. Throws IoError naming `path` if entries are
 /// missing, or values have other types than Keeler writes.

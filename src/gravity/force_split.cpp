@@ -1,7 +1,6 @@
 #include "force_split.hpp"
 
-#include <Eigen/Dense>
-
+#include <keeler/core/linear_algebra.hpp>
 #include <keeler/core/units.hpp>
 
 #include <cassert>
@@ -61,8 +60,7 @@ Coefficients most_concentrated(const Quadrature& rule, double band) {
       wave += rule.weights[j] * std::cos(band * rule.nodes[i] * rule.nodes[j]) * basis(rule.nodes[j]);
     below += rule.weights[i] * wave * wave.transpose();
   }
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solution(below, whole);
-  const Coefficients best = solution.eigenvectors().col(term_count - 1);
+  const Coefficients best = last_eigenvector(below, whole);
   return best / best.dot(integral);
 }
 

@@ -2,9 +2,9 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/format.hpp>
+#include <keeler/core/linear_algebra.hpp>
 #include <keeler/core/units.hpp>
 
-#include <Eigen/Dense>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -81,10 +81,10 @@ std::optional<BrightnessAsymmetry> brightness_asymmetry(std::span<const Photomet
       waves(k, 2 * n) = std::sin(2.0 * n * one.sight.longitude());
     }
   }
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> fit(waves);
-  if (fit.rank() < terms)
+  const LeastSquares fit = least_squares(waves, values);
+  if (fit.rank < terms)
     return std::nullopt;
-  const Eigen::VectorXd coefficients = fit.solve(values);
+  const Eigen::VectorXd coefficients = fit.solution;
   const auto brightness = [&](double longitude) {
     double sum = coefficients[0];
     for (int n = 1; n <= azimuth_harmonics; ++n)

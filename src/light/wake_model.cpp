@@ -1,8 +1,7 @@
 #include <keeler/light/wake_model.hpp>
 
+#include <keeler/core/linear_algebra.hpp>
 #include <keeler/core/units.hpp>
-
-#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
@@ -32,14 +31,11 @@ class Fit {
 public:
   Fit(std::span<const StarTransmission> data, BarSection section) : data_(data), section_(section) {}
 
-  // Levenberg and Marquardt's descent from a start; returns χ².
+  // Levenberg and Marquardt's descent from a start, each step a least-squares problem (Moré 1978); returns χ².
   double descend(Numbers& numbers) const {
     double damping = 1e-3, chi_square = residuals(numbers).squaredNorm();
     for (int step = 0; step < max_steps && damping < 1e10; ++step) {
-      const Eigen::MatrixXd slopes = slopes_at(numbers);
-      Eigen::Matrix4d normal = slopes.transpose() * slopes;
-      normal.diagonal() += damping * (normal.diagonal().array() + 1e-12).matrix();
-      Numbers next = numbers - normal.ldlt().solve(slopes.transpose() * residuals(numbers));
+      Numbers next = numbers - damped_step(slopes_at(numbers), residuals(numbers), damping);
       keep_in_range(next);
       const double there = residuals(next).squaredNorm();
       if (there < chi_square) {
@@ -66,6 +62,17 @@ public:
   }
 
 private:
+  // Minimises |slopes x − misses|² + Σ damping s_k² x_k², with s_k the length of the k-th column of the slopes.
+  static Numbers damped_step(const Eigen::MatrixXd& slopes, const Eigen::VectorXd& misses, double damping) {
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(slopes.rows() + 4, 4);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(slopes.rows() + 4);
+    matrix.topRows(slopes.rows()) = slopes;
+    right.head(misses.size()) = misses;
+    for (Eigen::Index k = 0; k < 4; ++k)
+      matrix(slopes.rows() + k, k) = std::sqrt(damping * (slopes.col(k).squaredNorm() + 1e-12));
+    return least_squares(matrix, right).solution;
+  }
+
   Eigen::VectorXd residuals(const Numbers& numbers) const {
     const WakeModel model = model_of(numbers, section_);
     Eigen::VectorXd all(static_cast<Eigen::Index>(data_.size()));
@@ -115,11 +122,12 @@ std::optional<FittedWakes> fit_wakes(std::span<const StarTransmission> transmiss
   best.model.azimuth = std::fmod(best.model.azimuth, pi);
   if (best.model.azimuth < 0.0)
     best.model.azimuth += pi;
-  const Eigen::MatrixXd slopes = fit.slopes_at(of_best);
-  const Eigen::Matrix4d covariance = (slopes.transpose() * slopes).completeOrthogonalDecomposition().pseudoInverse();
+  const auto count = static_cast<Eigen::Index>(transmissions.size());
+  const Eigen::MatrixXd inverse =
+      least_squares(fit.slopes_at(of_best), Eigen::MatrixXd::Identity(count, count)).solution;
   best.freedom = transmissions.size() - 4;
   const double misfit = std::sqrt(std::max(1.0, best.chi_square / static_cast<double>(best.freedom)));
-  const Numbers errors = misfit * covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const Numbers errors = misfit * inverse.rowwise().norm();
   best.errors = {section, errors[0] * best.model.height, errors[1] * best.model.gap, errors[2], errors[3]};
   return best;
 }

@@ -1,6 +1,7 @@
 // Exact solutions.
 #include "rows.hpp"
 
+#include <keeler/core/linear_algebra.hpp>
 #include <keeler/core/parallel.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/core/units.hpp>
@@ -11,7 +12,7 @@
 
 #include "lattice.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -182,7 +183,7 @@ end = 1.0
       simulation.advance();
   }
   const auto before = states.leftCols<samples - 1>(), after = states.rightCols<samples - 1>();
-  const Eigen::Matrix4d map = before.transpose().colPivHouseholderQr().solve(after.transpose()).transpose();
+  const Eigen::Matrix4d map = least_squares(before.transpose(), after.transpose()).solution.transpose();
   return std::log(map.eigenvalues().cwiseAbs().maxCoeff()) / (steps * scene.step_length());
 }
 

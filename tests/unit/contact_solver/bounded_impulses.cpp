@@ -1,9 +1,9 @@
 // Impulses that only push: statics with known forces, and random networks against a search through all free sets.
 #include <bounded_impulses.hpp>
 
+#include <keeler/core/linear_algebra.hpp>
 #include <keeler/core/random.hpp>
 
-#include <Eigen/Dense>
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -59,7 +59,7 @@ struct Network {
       Eigen::VectorXd x = Eigen::VectorXd::Zero(a.rows());
       if (!members.empty()) {
         const Eigen::MatrixXd among = a(members, members);
-        const Eigen::VectorXd target = r(members), pushes = among.completeOrthogonalDecomposition().solve(target);
+        const Eigen::VectorXd target = r(members), pushes = least_squares(among, target).solution;
         for (std::size_t m = 0; m < members.size(); ++m)
           x(members[m]) = pushes(static_cast<Eigen::Index>(m));
       }
