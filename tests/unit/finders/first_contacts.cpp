@@ -117,7 +117,7 @@ private:
   }
 
   std::unique_ptr<Finder> finder_;
-  DriftStep step_{{}, 0.0, 0.0, 0.0};
+  DriftStep step_ = DriftStep(PairCase().frequencies, 0.0, 0.0, 0.0);
 };
 
 std::string row(const char* name, const Tally& t) {
