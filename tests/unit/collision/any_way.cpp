@@ -110,7 +110,7 @@ TEST_CASE("the same bits any way: dense states, where contacts follow from conta
   s.filling = 0.4, s.optical_depth = 1.5;
   struct Case {
     double step, restitution; // orbits
-    int steps;
+    std::uint64_t steps;
   };
   for (const Case& c : {Case{1e-3, 0.0, 5}, Case{1e-3, 0.5, 25}, Case{1e-2, 0.0, 1}, Case{1e-2, 0.5, 15},
                         Case{1e-2, 1.0, 15}, Case{5e-2, 0.5, 4}, Case{5e-2, 1.0, 3}}) {
@@ -118,7 +118,8 @@ TEST_CASE("the same bits any way: dense states, where contacts follow from conta
     CAPTURE(c.restitution);
     s.step = two_pi * c.step;
     s.restitution = constant_restitution(c.restitution);
-    const Seen seen = same_any_way(test::make_patch(s, 2), test::settings_of(s), {s.step, c.steps});
+    const int steps = static_cast<int>(c.step > 5e-3 ? test::draws(c.steps) : c.steps);
+    const Seen seen = same_any_way(test::make_patch(s, 2), test::settings_of(s), {s.step, steps});
     CHECK(seen.collisions > 1000);
     CHECK(seen.rolled_back > 0); // a contact of another domain preceded
   }
