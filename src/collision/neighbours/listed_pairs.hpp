@@ -1,5 +1,4 @@
-// The pairs of the neighbour lists, each once: the pairs found when all lists were rebuilt; but particles with a list
-// rebuilt by itself since then contribute their whole lists instead.
+// From the cells of lines to neighbour lists, and from these to pairs, each once.
 #pragma once
 
 #include "line_cells.hpp"
@@ -17,9 +16,24 @@ inline std::size_t pair_count(const PaddedPairs& pairs) {
   return pairs.size() - kernel_padding;
 }
 
-/// Returns the pairs (i, j) with i in `particles` and j on the list of i; if j is marked too, only from the smaller
-/// index. So each pair occurs once when all blocks of the marked particles are visited.
-PaddedPairs pairs_of_lists(const VerletList& list, std::span<const std::uint32_t> particles, const MarkedSet& marked);
+/// Returns the pairs (i, j) with i in `particles` and j on the list of i; if is_visited(j), so that the list of j is
+/// gone through too, only from the smaller index. So each pair occurs once when all lists to be visited are.
+template<class IsVisited>
+PaddedPairs pairs_of_lists(const VerletList& list, const auto& particles, const IsVisited& is_visited) {
+  std::size_t room = kernel_padding, count = 0;
+  for (const std::uint32_t i : particles)
+    room += list.length(i);
+  PaddedPairs pairs(room);
+  for (const std::uint32_t i : particles) {
+    assert(is_visited(i));
+    for (const std::uint32_t j : list.list(i)) {
+      pairs[count] = {i, j};
+      count += !is_visited(j) || i < j;
+    }
+  }
+  pairs.resize(count + kernel_padding);
+  return pairs;
+}
 
 /// Number of marked particles in a block; the whole lists of a block are visited together.
 inline constexpr std::size_t marked_block = 64;
@@ -32,46 +46,13 @@ inline std::span<const std::uint32_t> marked_members(const MarkedSet& marked, st
   return marked.members().subspan(begin, std::min(marked_block, marked.size() - begin));
 }
 
-class ListedPairs {
-public:
-  /// What rebuild() has done.
-  struct Rebuild {
-    std::uint64_t tested = 0; ///< pairs of lines
-    std::uint64_t entries = 0;
-  };
-  /// Finds all pairs of lines that may touch within `half` (rad) before and after their instant, and lays out and fills
-  /// the lists with them.
-  Rebuild rebuild(const LineCells& cells, double half, VerletList& list);
-
-  /// Notes that the list of particle i has been rebuilt by itself.
-  void renewed(std::size_t i) { renewed_.insert(i); }
-
-  /// Calls visit(pairs) for the pairs of a block. Pairs of a block from_rebuild() may be superseded(), since the list
-  /// of one of their particles was rebuilt by itself. Blocks may be visited by several threads.
-  template<class Visit> void visit_block(std::size_t block, const VerletList& list, const Visit& visit) const {
-    if (from_rebuild(block))
-      visit(found_[block]);
-    else
-      visit(pairs_of_lists(list, marked_members(renewed_, block - found_.size()), renewed_));
-  }
-  std::size_t blocks() const { return found_.size() + marked_blocks(renewed_); }
-  bool from_rebuild(std::size_t block) const { return block < found_.size(); }
-  bool superseded(const LinePair& pair) const {
-    return renewed_.contains(pair.first) || renewed_.contains(pair.second);
-  }
-
-  void release() { found_ = {}; }
-  std::size_t bytes() const;
-  /// True if each pair of the lists, which must be sound, is there once.
-  bool sound(const VerletList& list) const;
-
-private:
-  struct Parts;
-  std::uint64_t find(const LineCells& cells, double half, Parts& parts);
-  void fill(const LineCells& cells, const Parts& parts, VerletList& list);
-
-  std::vector<PaddedPairs> found_; // by block of slots
-  MarkedSet renewed_;
+/// What rebuild_lists() has done.
+struct ListRebuild {
+  std::uint64_t tested = 0; ///< pairs of lines
+  std::uint64_t entries = 0;
 };
+/// Finds all pairs of lines that may touch within `half` (rad) before and after their instant, and lays out and fills
+/// the lists with them.
+ListRebuild rebuild_lists(const LineCells& cells, double half, VerletList& list);
 
 } // namespace keeler::collision

@@ -60,8 +60,7 @@ bool NeighbourLists::fill_lists() {
   ++counts_.rebuilds;
   if (!references_.cells().one_image())
     return false;
-  const ListedPairs::Rebuild done =
-      pairs_.rebuild(references_.cells(), references_.lifetime().half(step_length_), lists_);
+  const ListRebuild done = rebuild_lists(references_.cells(), references_.lifetime().half(step_length_), lists_);
   policy_.rebuilt_all(lists_.size(), done.tested, done.entries);
   counts_.tested += done.tested;
   counts_.listed += done.entries / 2;
@@ -75,7 +74,7 @@ bool NeighbourLists::begin_interval() {
                                               references_.lifetime(), step_length_);
   if (!update(interval_.begin(step(), length, references_)))
     return false;
-  policy_.pruned(interval_.prune(pairs_, lists_, step_length_));
+  policy_.pruned(interval_.prune(lists_, step_length_));
   return true;
 }
 
@@ -126,7 +125,6 @@ bool NeighbourLists::renew_path(std::size_t i, const Rotation& to_middle) {
   require_finite(step().particles, i);
   ++counts_.renewed;
   policy_.renewed_one();
-  pairs_.renewed(i);
   interval_.renewed(i);
   return references_.renew(step(), i, to_middle);
 }
@@ -160,12 +158,11 @@ void NeighbourLists::release() {
   step_.reset();
   references_.release();
   lists_.release();
-  pairs_.release();
   interval_.release();
 }
 
 std::size_t NeighbourLists::bytes() const {
-  return references_.bytes() + lists_.bytes() + pairs_.bytes() + interval_.bytes();
+  return references_.bytes() + lists_.bytes() + interval_.bytes();
 }
 
 // True if the invariants hold; of many particles, which would take long, unchecked.
@@ -175,7 +172,7 @@ bool NeighbourLists::sound() const {
     return true;
   const StepInterval &lists = references_.lifetime(), &interval = interval_.steps();
   return lists.age - interval.age + interval.length <= lists.length && references_.sound(lists_.size()) &&
-         lists_.sound() && pairs_.sound(lists_) && interval_.sound(lists_.size());
+         lists_.sound() && interval_.sound(lists_.size());
 }
 
 } // namespace keeler::collision

@@ -8,7 +8,7 @@
 // when too many particles have left.
 //
 // Data by lifetime:
-//   lists              ReferencePaths, VerletList, ListedPairs
+//   lists              ReferencePaths, VerletList
 //   pruning interval   PruningInterval: lines and pruned pairs for a few steps between disturbances
 //   step               SearchContext, from begin() to mark_dirty()
 //   run                RebuildPolicy, which decides when lists and intervals end
@@ -145,7 +145,6 @@ private:
   RebuildPolicy policy_;
   ReferencePaths references_;
   VerletList lists_;
-  ListedPairs pairs_;
   PruningInterval interval_;
   bool valid_ = false;   // whether the next step may use the lists
   ShearingBox last_box_; // of the last step,
@@ -164,7 +163,9 @@ template<class Visit> void NeighbourLists::visit_block(std::size_t block, const 
         visit(i, j, image);
     });
   else
-    visit_pairs(pairs_of_lists(lists_, marked_members(dirty, block - interval_.pair_blocks()), dirty), visit);
+    visit_pairs(pairs_of_lists(lists_, marked_members(dirty, block - interval_.pair_blocks()),
+                               [&](std::uint32_t j) { return dirty.contains(j); }),
+                visit);
 }
 
 // Visits the pairs that may touch in the step.

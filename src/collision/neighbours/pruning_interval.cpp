@@ -41,31 +41,55 @@ std::vector<std::uint32_t> PruningInterval::begin(const SearchContext& step, int
   return escaped;
 }
 
-std::uint64_t PruningInterval::prune(const ListedPairs& pairs, const VerletList& list, double step) {
+std::uint64_t PruningInterval::prune(const VerletList& list, double step) {
   assert(steps_.age == 0);
   dirty_.reset(list.size());
   escaped_.clear();
   escapes_later_.assign(list.size(), 0);
-  pruned_.resize(pairs.blocks());
-  const double half = steps_.half(step);
-  const LineSpan all = widened(-half, half, half);
+  constexpr std::size_t block = 512;
+  pruned_.resize((list.size() + block - 1) / block);
   std::vector<std::uint64_t> tested(pruned_.size());
   parallel_for(
       pruned_.size(),
       [&](std::size_t b) {
-        pairs.visit_block(b, list, [&](const PaddedPairs& listed) {
-          const std::size_t count = pair_count(listed);
-          PaddedPairs kept(count);
-          auto end = kept.begin() + static_cast<std::ptrdiff_t>(filter(all, listed.data(), count, kept.data()));
-          if (pairs.from_rebuild(b))
-            end = std::remove_if(kept.begin(), end, [&](const LinePair& pair) { return pairs.superseded(pair); });
-          pruned_[b].assign(kept.begin(), end);
-          pruned_[b].resize(pruned_[b].size() + kernel_padding);
-          tested[b] = count;
-        });
+        std::vector<LinePair> kept;
+        tested[b] = prune_lists(list, b * block, std::min(list.size(), (b + 1) * block), step, kept);
+        kept.resize(kept.size() + kernel_padding);
+        pruned_[b].assign(kept.begin(), kept.end());
       },
       1);
   return std::accumulate(tested.begin(), tested.end(), std::uint64_t{0});
+}
+
+// Appends the pairs of [first, last) with larger indices on their lists that may touch in the interval. Returns the
+// number of pairs tested.
+std::uint64_t PruningInterval::prune_lists(const VerletList& list, std::size_t first, std::size_t last, double step,
+                                           std::vector<LinePair>& kept) const {
+  const double half = steps_.half(step);
+  const LineSpan all = widened(-half, half, half);
+  constexpr std::size_t chunk = 512;
+  LinePair listed[chunk + kernel_padding] = {}, some[chunk];
+  std::uint64_t tested = 0;
+  std::size_t count = 0;
+  const auto test = [&] {
+    const std::size_t left = filter(all, listed, count, some);
+    kept.insert(kept.end(), some, some + left);
+    tested += count;
+    count = 0;
+  };
+  for (auto i = static_cast<std::uint32_t>(first); i < last; ++i) {
+    const std::uint32_t* const later = list.list(std::min<std::size_t>(i + 12, last - 1)).data();
+    __builtin_prefetch(later);
+    __builtin_prefetch(later + 16);
+    for (const std::uint32_t j : list.list(i)) {
+      listed[count] = {i, j};
+      count += i < j;
+      if (count == chunk)
+        test();
+    }
+  }
+  test();
+  return tested;
 }
 
 bool PruningInterval::follow_hit(const SearchContext& step, std::size_t i, double time, const Line& reference) {

@@ -20,7 +20,7 @@ public:
   std::vector<std::uint32_t> begin(const SearchContext& step, int length, const ReferencePaths& references);
   /// Picks the pruned pairs from the lists; no particle is dirty or escaped afterwards. Returns the number of pairs
   /// tested. `step`: length of a step, rad.
-  std::uint64_t prune(const ListedPairs& pairs, const VerletList& list, double step);
+  std::uint64_t prune(const VerletList& list, double step);
 
   /// Begins the next step; look_ahead() must follow if the interval continues.
   void begin_step() { ++steps_.age; }
@@ -85,6 +85,9 @@ public:
   bool sound(std::size_t particles) const;
 
 private:
+  std::uint64_t prune_lists(const VerletList& list, std::size_t first, std::size_t last, double step,
+                            std::vector<LinePair>& kept) const;
+
   Kernels kernels_ = kernels(choose_instruction_set());
   StepInterval steps_;
   Rotation to_middle_; // of the interval, from this epoch

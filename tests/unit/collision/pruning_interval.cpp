@@ -23,18 +23,17 @@ struct Pruned {
   ListedPatch patch;
   ReferencePaths paths;
   VerletList lists;
-  ListedPairs pairs;
   PruningInterval interval;
-  ListedPairs::Rebuild built;
+  ListRebuild built;
 
   Pruned(const Setting& setting, std::uint64_t seed) : patch(setting, seed) {
     REQUIRE(paths.rebuild(context(), 20, interval.buffer()));
-    built = pairs.rebuild(paths.cells(), paths.lifetime().half(setting.step), lists);
+    built = rebuild_lists(paths.cells(), paths.lifetime().half(setting.step), lists);
     begin(5);
   }
   std::vector<std::uint32_t> begin(int steps) {
     const std::vector<std::uint32_t> escaped = interval.begin(context(), steps, paths);
-    interval.prune(pairs, lists, patch.setting.step);
+    interval.prune(lists, patch.setting.step);
     return escaped;
   }
   SearchContext context() const {
@@ -67,7 +66,6 @@ TEST_CASE("pruned pairs are listed pairs, each once, and contain every pair that
     CAPTURE(seed);
     Pruned all({.ratio = seed % 2 ? 1.0 : 5.0, .heat = 0.3, .step = 0.01}, seed);
     CHECK(all.lists.sound());
-    CHECK(all.pairs.sound(all.lists));
     CHECK(all.interval.sound(all.count()));
     const auto pruned = all.pruned();
     for (const auto& [i, j] : pruned)
@@ -122,12 +120,10 @@ TEST_CASE("of a particle whose list was rebuilt by itself, the whole list is pru
     const SearchContext now = all.context();
     for (std::uint32_t i = 0; i < 100; ++i) { // not moved, so the pairs are those of before
       REQUIRE(all.paths.renew(now, i, all.paths.to_middle_of_rest(now)));
-      all.pairs.renewed(i);
       all.lists.replace(i, all.paths.find_neighbours(now, i, buffer, tested));
     }
     all.begin(5);
     CHECK((all.pruned() == before));
-    CHECK(all.pairs.sound(all.lists));
   }
 }
 
