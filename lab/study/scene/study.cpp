@@ -38,7 +38,7 @@ bool carry_out(const std::vector<batch::PlannedRun>& runs, const std::string& st
                batch::Claims& claims, const Stopwatch& watch, const SceneStudySettings& settings,
                const runs::RunRequests& requests) {
   folders.refuse_changed(runs, settings.scene + ":1:1");
-  batch::BatchSettings work = settings;
+  auto work = static_cast<const batch::BatchSettings&>(settings);
   work.progress = [&](Progress progress) {
     progress.what = stage + ": " + progress.what;
     progress.elapsed_s = watch.elapsed();
