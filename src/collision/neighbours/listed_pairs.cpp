@@ -25,7 +25,7 @@ struct SlotParts {
 
   std::size_t slots, blocks, count;
   std::vector<std::vector<LinePair>> found;    // pairs of slots, by block of the first
-  std::vector<std::vector<LinePair>> crossing; // those with the second slot in another part
+  std::vector<std::vector<LinePair>> crossing; // pairs with the second slot in another part
   std::vector<std::uint32_t> entries;          // of each slot
 };
 
