@@ -93,4 +93,20 @@ ListRebuild rebuild_lists(const LineCells& cells, double half, VerletList& list)
   return done;
 }
 
+PaddedPairs pairs_of_lists(const VerletList& list, std::span<const std::uint32_t> particles, const MarkedSet& marked) {
+  std::size_t room = kernel_padding, count = 0;
+  for (const std::uint32_t i : particles)
+    room += list.length(i);
+  PaddedPairs pairs(room);
+  for (const std::uint32_t i : particles) {
+    assert(marked.contains(i));
+    for (const std::uint32_t j : list.list(i)) {
+      pairs[count] = {i, j};
+      count += !marked.contains(j) || i < j;
+    }
+  }
+  pairs.resize(count + kernel_padding);
+  return pairs;
+}
+
 } // namespace keeler::collision

@@ -16,24 +16,9 @@ inline std::size_t pair_count(const PaddedPairs& pairs) {
   return pairs.size() - kernel_padding;
 }
 
-/// Returns the pairs (i, j) with i in `particles` and j on the list of i; if is_visited(j), so that the list of j is
-/// gone through too, only from the smaller index. So each pair occurs once when all lists to be visited are.
-template<class IsVisited>
-PaddedPairs pairs_of_lists(const VerletList& list, const auto& particles, const IsVisited& is_visited) {
-  std::size_t room = kernel_padding, count = 0;
-  for (const std::uint32_t i : particles)
-    room += list.length(i);
-  PaddedPairs pairs(room);
-  for (const std::uint32_t i : particles) {
-    assert(is_visited(i));
-    for (const std::uint32_t j : list.list(i)) {
-      pairs[count] = {i, j};
-      count += !is_visited(j) || i < j;
-    }
-  }
-  pairs.resize(count + kernel_padding);
-  return pairs;
-}
+/// Returns the pairs (i, j) with i in `particles` and j on the list of i; if j is marked too, only from the smaller
+/// index. So each pair occurs once when all blocks of the marked particles are visited.
+PaddedPairs pairs_of_lists(const VerletList& list, std::span<const std::uint32_t> particles, const MarkedSet& marked);
 
 /// Number of marked particles in a block; the whole lists of a block are visited together.
 inline constexpr std::size_t marked_block = 64;

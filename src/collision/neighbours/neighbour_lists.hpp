@@ -163,9 +163,7 @@ template<class Visit> void NeighbourLists::visit_block(std::size_t block, const 
         visit(i, j, image);
     });
   else
-    visit_pairs(pairs_of_lists(lists_, marked_members(dirty, block - interval_.pair_blocks()),
-                               [&](std::uint32_t j) { return dirty.contains(j); }),
-                visit);
+    visit_pairs(pairs_of_lists(lists_, marked_members(dirty, block - interval_.pair_blocks()), dirty), visit);
 }
 
 // Visits the pairs that may touch in the step.

@@ -124,8 +124,7 @@ TEST_CASE("the lists of marked particles give each of their pairs once, in any b
     std::set<std::pair<std::size_t, std::size_t>> found;
     std::size_t visited = 0, expected = 0;
     for (std::size_t block = 0; block < marked_blocks(marked); ++block) {
-      const PaddedPairs pairs = pairs_of_lists(matrix.lists, marked_members(marked, block),
-                                               [&](std::uint32_t j) { return marked.contains(j); });
+      const PaddedPairs pairs = pairs_of_lists(matrix.lists, marked_members(marked, block), marked);
       for (std::size_t k = 0; k < pair_count(pairs); ++k) {
         CHECK(matrix.pair(pairs[k].first, pairs[k].second));
         found.insert(std::minmax<std::size_t>(pairs[k].first, pairs[k].second));
