@@ -234,34 +234,41 @@ def kick_drift_kick():
     return d
 
 
-def slabs():
-    d = Drawing("Slabs of ranks, margins and ghosts", 760, 340)
-    left, top, height, width = 60, 60, 130, 213
-    for k in range(3):
-        d.rect(left + k * width, top, width, height, "pa" if k == 1 else "pc")
-        d.text(left + (k + 0.5) * width, top - 12, f"slab of rank {k}", "middle")
-    low, high = left + width, left + 2 * width
-    for edge, way in ((low, -1), (high, 1)):
-        near, far = edge + way * 46, edge + way * 92
-        d.rect(min(edge, near), top, 46, height, "pb")
-        d.line(far, top, far, top + height, "sb dash")
-    d.text(left + 1.5 * width, top + 70, "references of own particles", "middle", "small")
-    for edge, way in ((low, 1), (high, -1)):
-        d.line(edge, top + height + 14, edge + way * 22, top + height + 14, "line", True)
-        d.text(edge + way * 26, top + height + 18, "margin", "start" if way > 0 else "end", "small")
-    d.dot(low + 6, top + 36, 5, "a")
-    d.line(low + 6, top + 36, low - 12, top + 44, "sa", True)
-    d.dot(low - 24, top + 92, 5, "b")
-    d.line(low - 24, top + 92, low - 8, top + 100, "sb", True)
-    d.line(low - 46, top + height + 34, low, top + height + 34, "line", True)
-    d.text(low - 52, top + height + 38, "near ghosts: 2 margins, 2 radii", "end", "small")
-    d.line(high + 46, top + height + 34, high + 92, top + height + 34, "line", True)
-    d.text(high + 98, top + height + 38, "outer ghosts: 8 spheres", "start", "small")
-    d.lines(left, 262, (
-        "A particle belongs to the slab in which its reference was when the borders were made, wherever it is now. While no own",
-        "particle is farther across from its reference than the margin, it can touch only own particles and near ghosts. Outer",
-        "ghosts make the near ones' histories right: a wrong path can reach them only through a chain of contacts within one",
-        "step, which is noticed, and the step is repeated."))
+def blocks():
+    d = Drawing("Blocks of seven ranks, and the ghosts of one of them", 760, 490)
+    left, top, width, height = 60, 50, 640, 250
+    low, high, above, below = 250, 510, 125, 225  # sides of the block of rank 3
+    d.rect(left, top, width, height, "pc")
+    d.rect(low - 36, above - 40, high - low + 72, below - above + 80, "pb")
+    d.rect(low - 64, above - 68, high - low + 128, below - above + 136, "sb dash")
+    d.rect(low, above, high - low, below - above, "pa")
+    for x in (low, high):
+        d.line(x, top, x, top + height)
+    for start, end, y in ((left, low, 155), (low, high, above), (low, high, below), (high, left + width, 190)):
+        d.line(start, y, end, y)
+    for k, (x, y) in enumerate(((105, 240), (105, 105), (440, 258), (380, 158), (440, 112), (655, 255), (655, 120))):
+        d.text(x, y, f"rank {k}", "middle")
+    d.text(380, 190, "references of own particles", "middle", "small")
+    for k, x in enumerate((155, 380, 605)):
+        d.text(x, top - 12, f"strip {k}", "middle")
+    d.dot(low + 12, 165, 5, "a")
+    d.line(low + 12, 165, low - 14, 172, "sa", True)
+    d.dot(high + 18, 160, 5, "b")
+    d.line(high + 18, 160, high - 4, 152, "sb", True)
+    d.line(left + width + 14, top + height, left + width + 14, top + height - 50, "line", True)
+    d.text(left + width + 22, top + height - 42, "y")
+    d.line(left, top + height + 16, left + 50, top + height + 16, "line", True)
+    d.text(left + 58, top + height + 20, "x")
+    for x, look, words in ((200, "pa", "block of rank 3"), (350, "pb", "near ghosts"), (480, "sb dash", "outer ghosts: 8 rows of spheres")):
+        d.rect(x, top + height + 10, 24, 12, look)
+        d.text(x + 32, top + height + 20, words, "start", "small")
+    d.lines(left, 354, (
+        "A particle belongs to the block in which its reference was when the ghost layer was built, wherever it is now. While no",
+        "own particle is farther from its reference than the margin along x or two margins along y, it can touch only own particles",
+        "and near ghosts. Outer ghosts make the near ones' histories right: a wrong path can reach them only through a chain of",
+        "contacts within one step, which is noticed, and the step is repeated. Rank 3 has ghosts of ranks 0 to 6 here, and across the",
+        "edges of the box too where they are within its reach. Across the sheared edge in x the blocks meet as they lie when the",
+        "layer is built."))
     return d
 
 
@@ -352,7 +359,7 @@ def house():
 def main():
     wrong = []
     FOLDER.mkdir(exist_ok=True)
-    for draw in (sheared_images, neighbour_lists, contact_domains, kick_drift_kick, slabs, transform_layout, house):
+    for draw in (sheared_images, neighbour_lists, contact_domains, kick_drift_kick, blocks, transform_layout, house):
         path = FOLDER / (draw.__name__.replace("_", "-") + ".svg")
         svg = draw().svg()
         if "--check" in sys.argv[1:]:
