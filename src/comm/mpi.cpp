@@ -16,6 +16,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include <malloc.h>
 #include <mpi.h>
@@ -132,8 +133,9 @@ void fail_ranks(ExitCode code) {
   finish_ranks();
 }
 
-bool all_ranks_failed() {
-  return error_is_common;
+bool take_common_error() {
+  another_reports = false;
+  return std::exchange(error_is_common, false);
 }
 
 bool another_rank_reports() {

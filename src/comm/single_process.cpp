@@ -75,7 +75,7 @@ const ExchangeCosts& exchange_costs() {
 }
 void finish_ranks() {}
 void fail_ranks(ExitCode) {}
-bool all_ranks_failed() {
+bool take_common_error() {
   return true;
 }
 bool another_rank_reports() {

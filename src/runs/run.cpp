@@ -94,7 +94,7 @@ RunResult evolve(const Scene& scene, const RunOptions& options, RunRequests& req
     throw;
   } catch (const Error& error) {
     // particles are distributed: all ranks must know of the error
-    if (error.code() == ExitCode::invariant && (!options.ranks.distributed() || comm::all_ranks_failed()))
+    if (error.code() == ExitCode::invariant && (!options.ranks.distributed() || comm::take_common_error()))
       fail_broken(InvariantError(error.what()), simulation, scene, folder, recorder);
     throw;
   }

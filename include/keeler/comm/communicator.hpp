@@ -185,8 +185,9 @@ void finish_ranks();
 /// Ends a rank that failed with this code. If the other ranks do not know of the error they wait for this rank in some
 /// other call; then it aborts all ranks.
 void fail_ranks(ExitCode code);
-/// True if all ranks have thrown the error that ends this rank together: they may still make collective calls.
-bool all_ranks_failed();
+/// True if all ranks have thrown the error at hand together, so that they may go on with collective calls. A rank that
+/// fails alone in these aborts all ranks again.
+bool take_common_error();
 /// True if another rank reports the error that ends this rank.
 bool another_rank_reports();
 
