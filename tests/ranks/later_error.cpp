@@ -10,7 +10,7 @@ int main() {
       return 1;
   }
   if (ranks.rank() == 1)
-    keeler::comm::fail_ranks(keeler::ExitCode::run_time);
+    keeler::comm::fail_ranks(keeler::ExitCode::invariant);
   ranks.sum(1);
   return 0;
 }
