@@ -20,10 +20,12 @@ public:
 
   void accelerate(const Boundary& boundary, std::span<Vec3> accelerations) override {
     assert(accelerations.size() == boundary.particles.size());
-    const gravity::GravityProblem problem = gravity_problem(boundary, orbital_frequency_, positions_, masses_);
+    std::vector<Vec3> positions;
+    std::vector<double> masses;
+    const gravity::GravityProblem problem = gravity_problem(boundary, orbital_frequency_, positions, masses);
     if (settings_.images.far) {
       const Vec3 origin = random_origin(boundary);
-      parallel_for(positions_.size(), [&](std::size_t k) { positions_[k] -= origin; });
+      parallel_for(positions.size(), [&](std::size_t k) { positions[k] -= origin; });
     }
     solver_->accelerate(problem, accelerations);
   }
@@ -31,11 +33,13 @@ public:
   std::optional<gravity::GravityEnergy> energy(const Boundary& boundary) override {
     if (!has_energy_meter(settings_))
       return std::nullopt;
-    const gravity::GravityProblem problem = gravity_problem(boundary, orbital_frequency_, positions_, masses_);
+    std::vector<Vec3> positions;
+    std::vector<double> masses;
+    const gravity::GravityProblem problem = gravity_problem(boundary, orbital_frequency_, positions, masses);
     if (auto* const solver = dynamic_cast<gravity::EnergyMeter*>(solver_.get())) // one mesh for both
       return solver->energy(problem);
     if (!meter_)
-      meter_ = make_energy_meter(settings_, masses_, problem.box.area(), problem.ranks);
+      meter_ = make_energy_meter(settings_, masses, problem.box.area(), problem.ranks);
     return meter_->energy(problem);
   }
 
@@ -51,9 +55,6 @@ private:
   std::uint64_t seed_;
   std::unique_ptr<gravity::GravitySolver> solver_;
   std::unique_ptr<gravity::EnergyMeter> meter_; // made when needed, if the solver is none
-  // scratch
-  std::vector<Vec3> positions_;
-  std::vector<double> masses_;
 };
 
 } // namespace

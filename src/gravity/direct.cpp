@@ -16,20 +16,18 @@
 namespace keeler::gravity {
 namespace {
 
-// Particles folded into the cell, sorted by id.
-struct Ordered {
-  std::vector<std::uint32_t> order; // indices in the problem's arrays
-  std::vector<PointSource> sources;
-};
+// Particle k of the problem, folded into the cell.
+PointSource source_at(const GravityProblem& problem, double offset, std::size_t k) {
+  const Vec3 position = into_cell(problem.box, offset, problem.positions[k]);
+  return {position.x(), position.y(), position.z(), problem.masses[k]};
+}
 
-Ordered ordered(const GravityProblem& problem, double offset) {
-  Ordered result{particles::order_by_id(problem.ids), {}};
-  result.sources.reserve(result.order.size());
-  for (const std::size_t k : result.order) {
-    const Vec3 position = into_cell(problem.box, offset, problem.positions[k]);
-    result.sources.push_back({position.x(), position.y(), position.z(), problem.masses[k]});
-  }
-  return result;
+std::vector<PointSource> sources_by_id(const GravityProblem& problem, double offset) {
+  std::vector<PointSource> sources;
+  sources.reserve(problem.ids.size());
+  for (const std::size_t k : particles::order_by_id(problem.ids))
+    sources.push_back(source_at(problem, offset, k));
+  return sources;
 }
 
 // Returns the attraction per G of all sources and their near images on each target.
@@ -85,14 +83,12 @@ std::vector<Vec3> sampled_accelerations(const GravityProblem& problem, std::span
   assert(problem.masses.size() == problem.positions.size() && problem.ids.size() == problem.positions.size());
   assert(!problem.ranks.distributed());
   const double offset = folded_offset(problem.box, problem.offset);
-  const auto [order, sources] = ordered(problem, offset);
-  std::vector<std::size_t> sorted_index(order.size());
-  for (std::size_t k = 0; k < order.size(); ++k)
-    sorted_index[order[k]] = k;
+  const std::vector<PointSource> sources = sources_by_id(problem, offset);
   std::vector<PointSource> targets;
+  targets.reserve(sample.size());
   for (const std::size_t k : sample) {
-    assert(k < sorted_index.size());
-    targets.push_back(sources[sorted_index[k]]);
+    assert(k < problem.ids.size());
+    targets.push_back(source_at(problem, offset, k));
   }
   const ImageSettings all = rings_for_height(images, problem.box, height_of(sources));
   std::vector<Vec3> result =

@@ -36,6 +36,7 @@ DirectSources::DirectSources(const std::vector<PointSource>& sources, double mas
     return;
   unit_ = mass_unit;
   const double inverse = unit_ > 0.0 ? 1.0 / unit_ : 0.0;
+  points_.reserve(sources.size());
   for (const PointSource& s : sources)
     points_.push_back(single_point({s.x, s.y, s.z, inverse * s.mass}));
 }

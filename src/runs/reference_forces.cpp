@@ -10,6 +10,15 @@
 namespace keeler::runs {
 namespace {
 
+// The particles at these places in the order of ids.
+std::vector<std::size_t> sample_at(std::span<const std::uint64_t> ids, std::span<const std::size_t> places) {
+  const std::vector<std::uint32_t> order = particles::order_by_id(ids);
+  std::vector<std::size_t> sample;
+  for (const std::size_t place : places)
+    sample.push_back(order[place]);
+  return sample;
+}
+
 // Returns on all ranks the accelerations of particles by id, each known to its owner.
 [[maybe_unused]] std::vector<Vec3> rows_of_ranks(const gravity::GravityProblem& problem,
                                                  std::span<const Vec3> accelerations,
@@ -75,12 +84,10 @@ ComparedForces compare_forces(const gravity::GravityProblem& problem, std::span<
       compared.found = rows_of_ranks(problem, accelerations, compared.ids);
       return compared;
     }
-  const std::vector<std::uint32_t> order = particles::order_by_id(problem.ids);
-  std::vector<std::size_t> sample;
-  for (const std::size_t place : places) {
-    sample.push_back(order[place]);
-    compared.ids.push_back(problem.ids[sample.back()]);
-    compared.found.push_back(accelerations[sample.back()]);
+  const std::vector<std::size_t> sample = sample_at(problem.ids, places);
+  for (const std::size_t k : sample) {
+    compared.ids.push_back(problem.ids[k]);
+    compared.found.push_back(accelerations[k]);
   }
   compared.exact = sampled_accelerations(problem, sample, images, set, precision);
   return compared;
