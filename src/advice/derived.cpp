@@ -21,7 +21,7 @@ namespace {
 // 10⁵.
 namespace cost {
 constexpr double program_bytes = 33e6;  // code, libraries, buffers that do not grow with N
-constexpr double drift_bytes = 515.0;   // lines, cells, lists, event counts, buffers: at most 590 with state
+constexpr double drift_bytes = 440.0;   // lines, cells, lists, event counts, buffers, and gaps of the heap
 constexpr double tree_node_bytes = 120; // box, mass, centre, quadrupole, links
 constexpr double nodes_per_particle = 0.5;
 // on several ranks each has copies of the particles of all, and the sources or the tree made of them
@@ -45,9 +45,8 @@ bool is_pairwise(Solver solver) {
 // Returns the bytes of the state, the drift and the solver. Without what a solver gathers.
 double bytes_per_particle(const Scene& scene, const Counts& counts) {
   const double state = sizeof(Body) + sizeof(std::uint64_t);
-  const double output_copy = 2 * sizeof(Vec3) + 2 * sizeof(double) + sizeof(std::uint64_t); // a Patch
-  const double spins = scene.collisions.friction ? 2.0 * sizeof(Vec3) : 0.0;                // in the state and a Patch
-  double total = state + spins + output_copy + cost::drift_bytes;
+  const double spins = scene.collisions.friction ? sizeof(Vec3) : 0.0;
+  double total = state + spins + cost::drift_bytes;
   if (scene.gravity) {
     total += 2 * sizeof(Vec3) + sizeof(double) + sizeof(std::uint64_t); // a GravityProblem and its result
     const Solver solver = chosen_for(counts.all, *scene.gravity).solver;
