@@ -41,7 +41,7 @@ void warn_of_narrow_wakes(const scene::PatchScale& patch, Lines& lines) {
   else if (length < rounding * enough)
     lines.push_back(
         fmt::format("the box is {} lambda_cr long along the orbit: the viscosity of wakes goes with this length, "
-                    "whatever the width: at {:g} it is some 20 % lower than at {:g}; a box of {:g} x {:g} will do",
+                    "whatever the width: at {:g} it is some 15 % lower than at {:g}; a box of {:g} x {:g} will do",
                     format_number(length, 2), min_spans, enough, min_spans, enough));
 }
 

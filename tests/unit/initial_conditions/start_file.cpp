@@ -108,7 +108,7 @@ TEST_CASE("doubts about a patch have numbers, and a large one none") {
   REQUIRE(advice::warnings(scene(wakes)).size() == 1);
   CHECK(advice::warnings(scene(wakes)).front() ==
         "the box is 4 lambda_cr long along the orbit: the viscosity of wakes goes with this length, whatever the "
-        "width: at 4 it is some 20 % lower than at 8; a box of 4 x 8 will do");
+        "width: at 4 it is some 15 % lower than at 8; a box of 4 x 8 will do");
   CHECK(advice::warnings(scene({"box.size_in_wavelengths=[4,8]", "particles.optical_depth=0.5",
                                 "particles.velocity_dispersion=3.5"}))
             .empty());
