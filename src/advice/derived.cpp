@@ -17,11 +17,12 @@
 namespace keeler::advice {
 namespace {
 
-// Peak memory of `keeler run` of examples/a-ring-wakes, settled and fresh, and examples/equilibrium, N = 10⁵ to 9 ×
-// 10⁵.
+// Peak memory of `keeler run` of examples/a-ring-wakes, settled and fresh, and examples/equilibrium at τ 0.5
+// to 3, N = 10⁵ to 10⁶.
 namespace cost {
 constexpr double program_bytes = 33e6;  // code, libraries, buffers that do not grow with N
 constexpr double drift_bytes = 440.0;   // lines, cells, lists, event counts, buffers, and gaps of the heap
+constexpr double dense_bytes = 250.0;   // longer lists and more pairs, for each optical depth above 1
 constexpr double tree_node_bytes = 120; // box, mass, centre, quadrupole, links
 constexpr double nodes_per_particle = 0.5;
 // on several ranks each has copies of the particles of all, and the sources or the tree made of them
@@ -46,7 +47,7 @@ bool is_pairwise(Solver solver) {
 double bytes_per_particle(const Scene& scene, const Counts& counts) {
   const double state = sizeof(Body) + sizeof(std::uint64_t);
   const double spins = scene.collisions.friction ? sizeof(Vec3) : 0.0;
-  double total = state + spins + cost::drift_bytes;
+  double total = state + spins + cost::drift_bytes + cost::dense_bytes * std::max(0.0, scene.optical_depth() - 1.0);
   if (scene.gravity) {
     total += 2 * sizeof(Vec3) + sizeof(double) + sizeof(std::uint64_t); // a GravityProblem and its result
     const Solver solver = chosen_for(counts.all, *scene.gravity).solver;
