@@ -23,6 +23,7 @@ namespace cost {
 constexpr double program_bytes = 33e6;  // code, libraries, buffers that do not grow with N
 constexpr double drift_bytes = 440.0;   // lines, cells, lists, event counts, buffers, and gaps of the heap
 constexpr double dense_bytes = 250.0;   // longer lists and more pairs, for each optical depth above 1
+constexpr double path_bytes = 17e3;     // the same for long steps: for each optical depth and orbit of a step
 constexpr double tree_node_bytes = 120; // box, mass, centre, quadrupole, links
 constexpr double nodes_per_particle = 0.5;
 // on several ranks each has copies of the particles of all, and the sources or the tree made of them
@@ -43,11 +44,19 @@ bool is_pairwise(Solver solver) {
   return solver == Solver::tree || solver == Solver::direct;
 }
 
+// Returns the bytes of what grows with the neighbours of a particle. Those of a patch from a file are unknown here.
+double neighbour_bytes(const Scene& scene) {
+  if (scene.particles.count == 0)
+    return 0.0;
+  const double depth = scene.optical_depth(), step = scene.time.automatic ? 0.0 : scene.time.step;
+  return cost::dense_bytes * std::max(0.0, depth - 1.0) + cost::path_bytes * depth * step;
+}
+
 // Returns the bytes of the state, the drift and the solver. Without what a solver gathers.
 double bytes_per_particle(const Scene& scene, const Counts& counts) {
   const double state = sizeof(Body) + sizeof(std::uint64_t);
   const double spins = scene.collisions.friction ? sizeof(Vec3) : 0.0;
-  double total = state + spins + cost::drift_bytes + cost::dense_bytes * std::max(0.0, scene.optical_depth() - 1.0);
+  double total = state + spins + cost::drift_bytes + neighbour_bytes(scene);
   if (scene.gravity) {
     total += 2 * sizeof(Vec3) + sizeof(double) + sizeof(std::uint64_t); // a GravityProblem and its result
     const Solver solver = chosen_for(counts.all, *scene.gravity).solver;

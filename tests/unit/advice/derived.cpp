@@ -103,6 +103,27 @@ TEST_CASE("with a start file only the steps are known") {
       parse_scene("planet.preset = \"saturn-b-ring\"\ntime.end = 1\nstart.from = \"wakes.hdf\"\n", "s.toml");
   CHECK(!derive(scene).particles_known);
   CHECK(derive(scene).steps == scene.time.end_step);
+  // sizes and box are unknown
+  CHECK(rank_memory(scene, 1000, 1000) > 400.0 * 1000);
+  CHECK(rank_memory(scene, 1000, 1000) < 700.0 * 1000);
+}
+
+TEST_CASE("dense rings and long steps need more memory") {
+  const Scene example = load_scene(KEELER_SOURCE_DIR "/examples/equilibrium/scene.toml");
+  const auto bytes = [&](double depth, double step) {
+    Scene scene = example;
+    const double scale = std::sqrt(example.optical_depth() / depth);
+    scene.size_x *= scale;
+    scene.size_y *= scale;
+    scene.time.step = step;
+    return rank_memory(scene, 1000, 1000) / 1000;
+  };
+  // measured: docs/dev/estimate.md
+  CHECK(bytes(0.5, 1e-2) > 450);
+  CHECK(bytes(1.0, 1e-2) > 583);
+  CHECK(bytes(2.0, 1e-3) > 629);
+  CHECK(bytes(2.0, 1e-2) > 930);
+  CHECK(bytes(2.0, 1e-2) < 1.2 * 930);
 }
 
 } // namespace derived_test
