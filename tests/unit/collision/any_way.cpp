@@ -118,7 +118,7 @@ TEST_CASE("the same bits any way: dense states, where contacts follow from conta
     CAPTURE(c.restitution);
     s.step = two_pi * c.step;
     s.restitution = constant_restitution(c.restitution);
-    const int steps = static_cast<int>(c.step > 5e-3 ? test::draws(c.steps) : c.steps);
+    const int steps = static_cast<int>(c.steps > 5 ? test::draws(c.steps) : c.steps);
     const Seen seen = same_any_way(test::make_patch(s, 2), test::settings_of(s), {s.step, steps});
     CHECK(seen.collisions > 1000);
     CHECK(seen.rolled_back > 0); // a contact of another domain preceded

@@ -1,4 +1,6 @@
 // The memory of a run is bounded, by the estimate of `keeler check`.
+#include "draws.hpp"
+
 #include <keeler/advice/derived.hpp>
 #include <keeler/collision/costs.hpp>
 #include <keeler/core/threads.hpp>
@@ -53,7 +55,7 @@ TEST_CASE("the drift phase holds no more than 460 bytes a particle, 660 on threa
       set_threads(several);
       const Scene scene = scene_of(count, step);
       Simulation simulation(scene, start);
-      for (int k = 0; k < 30; ++k)
+      for (std::uint64_t k = 0; k < test::draws(30); ++k)
         simulation.advance();
       const auto held = static_cast<double>(simulation.drift().costs().bytes_per_particle);
       CHECK(held > 100.0); // bodies, ids and lines alone

@@ -1,4 +1,6 @@
 // Friction and [[moonlet]] in one scene: the torque of a contact, and identical bits for any number of threads.
+#include "draws.hpp"
+
 #include <keeler/core/threads.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/scene/load.hpp>
@@ -95,7 +97,7 @@ TEST_CASE("a rough ring around moonlets has the same bits for 1 to 3 threads, sp
   const auto end = [&](int count) {
     set_threads(count);
     Simulation simulation(scene, start);
-    for (int k = 0; k < 100; ++k)
+    for (std::uint64_t k = 0; k < test::draws(100); ++k)
       simulation.advance();
     return simulation.patch();
   };
