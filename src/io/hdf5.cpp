@@ -219,6 +219,9 @@ std::vector<std::string> names_in(const Handle& group) {
     return 0;
   };
   checked("list a group", [&] { return H5Literate(group.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, append, &names); });
+  for (const std::string& name : names) // a search of its tree need not find what damage has left in its leaves
+    if (name.empty() || !exists(group, name))
+      throw IoError("cannot list a group: its structures are damaged");
   return names;
 }
 

@@ -58,6 +58,22 @@ TEST_CASE("everything that is written to a file is read back from its bytes") {
   CHECK(hdf5::attribute_names(read) == std::vector<std::string>{"list", "none", "number", "text"});
 }
 
+TEST_CASE("a group whose names are listed but not found is damaged") {
+  std::vector<std::byte> image = hdf5_content([](const hdf5::Handle& file) {
+    for (const char* name : {"a", "b", "c"})
+      hdf5::create_group(file, name);
+  });
+  CHECK(hdf5::names_in(hdf5::open_image(image)) == std::vector<std::string>{"a", "b", "c"});
+  constexpr std::string_view node = "SNOD"; // HDF5 file format specification, "symbol table node"
+  constexpr std::ptrdiff_t header = 8, entry = 40;
+  const auto found = std::search(image.begin(), image.end(), node.begin(), node.end(),
+                                 [](std::byte byte, char letter) { return std::to_integer<char>(byte) == letter; });
+  REQUIRE(found != image.end());
+  std::fill_n(found + header + entry, 2 * entry, std::byte{0}); // all but the first name
+  CHECK_THROWS_WITH_AS(hdf5::names_in(hdf5::open_image(image)), "cannot list a group: its structures are damaged",
+                       IoError);
+}
+
 TEST_CASE("equal content gives equal bytes, and files that are open at once do not mix") {
   const auto number = [](double value) {
     return [value](const hdf5::Handle& file) { hdf5::write_attribute(file, "number", value); };
