@@ -3,6 +3,7 @@
 #include <keeler/finders/motion/relative.hpp>
 #include <keeler/finders/search/published.hpp>
 
+#include "draws.hpp"
 #include "unit/collision/grid_pairs.hpp"
 
 #include <keeler/cells/overlap.hpp>
@@ -162,9 +163,9 @@ TEST_CASE("every finder carries a dense state through fifty steps, ever larger o
       collision::CollisionSettings settings;
       settings.finder = entry.name;
       test::Ring ring(test::equilibrium_patch(500, 6), settings, two_pi * step);
-      for (int k = 0; k < 50; ++k)
+      for (int k = 0; k < (test::sanitized ? 25 : 50); ++k)
         ring.advance();
-      CHECK(ring.tally.fast > 100);
+      CHECK(ring.tally.fast > (test::sanitized ? 50 : 100));
       const bool faithful = !starts_with(entry.name, "certified");
       CHECK(cells::largest_overlap(ring.patch()).depth < (faithful ? 0.2 : 1e-11)); // misses, and no worse
     }

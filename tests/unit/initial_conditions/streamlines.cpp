@@ -1,5 +1,7 @@
 #include <keeler/initial_conditions/streamlines.hpp>
 
+#include "draws.hpp"
+
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
@@ -110,7 +112,8 @@ TEST_CASE("a scene's mode is measured as it was seeded, for any number of thread
 }
 
 TEST_CASE("without collisions a mode neither grows nor decays: after an orbit it is what it was") {
-  const Scene scene = modes_scene("count = 4000\nsizes = { law = \"equal\", radius = 1e-5 }",
+  const std::string count = test::sanitized ? "1000" : "4000";
+  const Scene scene = modes_scene("count = " + count + "\nsizes = { law = \"equal\", radius = 1e-5 }",
                                   "outward = [[1, 0.1, 0.0]]\ninward = [[2, 0.1, 50.0]]");
   Simulation simulation(scene, initial_patch(scene));
   std::vector<Patch> patches;
