@@ -259,6 +259,7 @@ def main():
 if __name__ == "__main__":
     for stop_signal in (signal.SIGINT, signal.SIGTERM):  # which a shell may have set to be ignored
         signal.signal(stop_signal, signal.default_int_handler)
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # --list | head
     try:
         sys.exit(main())
     except Stop as stop:

@@ -169,11 +169,11 @@ WakesRun wakes_run(double hill, int seed) {
 // Measured by the rows' own command with another law, or box (docs/trade-offs/box-and-sizes.md).
 std::string why_viscosity_differs(double hill) {
   if (hill < 0.85)
-    return "The factor depends on restitution where wakes are weak: with a constant 0.5 it is 11.2 at r_h 0.8, with "
-           "Bridges' law 6.4.";
+    return "The factor depends on restitution where wakes are weak: with a constant 0.5 it is 10.0 at r_h 0.8, with "
+           "Bridges' law 6.5.";
   if (hill < 0.95)
-    return "It goes with the length of the box along the orbit, whatever its width: 14.0 to 14.6 at 4 lambda_cr, 18 to "
-           "20 at 8 and 16. The formula is of boxes of the former length.";
+    return "It goes with the length of the box along the orbit, whatever its width: 14.2 to 14.6 at 4 lambda_cr, 16.9 "
+           "to 17.5 at 8 and 16. The formula is of boxes of the former length.";
   return "";
 }
 
