@@ -100,9 +100,8 @@ TEST_CASE("the same bits any way: uniform states, with and without kicks") {
   s.smallest = 0.4;
   s.step = two_pi * 2e-3;
   const Patch patch = test::make_patch(s, 1);
-  const int steps = test::sanitized ? 40 : 110;
-  CHECK(same_any_way(patch, {}, {s.step, steps}).collisions > 36u * static_cast<unsigned>(steps));
-  CHECK(same_any_way(patch, {}, {s.step, steps / 2, 0.2}).collisions > 15u * static_cast<unsigned>(steps));
+  CHECK(same_any_way(patch, {}, {s.step, test::sanitized ? 40 : 110}).collisions > (test::sanitized ? 1450 : 4000));
+  CHECK(same_any_way(patch, {}, {s.step, test::sanitized ? 22 : 60, 0.2}).collisions > (test::sanitized ? 730 : 2000));
 }
 
 TEST_CASE("the same bits any way: dense states, where contacts follow from contacts") {
