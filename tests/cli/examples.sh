@@ -1,9 +1,10 @@
 #!/bin/bash
 # examples.sh KEELER SOURCE_DIR: the commands in the READMEs of the examples, in the gallery, and the sweeps of
-# examples/papers work. Runs are shortened to two steps, and clumped states are replaced by initial ones (clumped.sh tests
-# clumping).
+# examples/papers work. Runs are shortened to two steps, pictures have one sample a pixel, and clumped states are replaced by
+# initial ones (clumped.sh tests clumping).
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
+shopt -s extglob
 ln -s "$source_dir/examples" "$work/examples"
 cd "$work" || exit 1
 # follow PAGE: runs the commands in its indented lines, except sweeps
@@ -15,6 +16,7 @@ follow() {
     [[ $command == *--lit* ]] && "$keeler" occultation nothing --elevation 20 2>&1 | grep -q "without Embree" && continue
     [[ $command == run* ]] && command+=" --set time.end=0.002"
     command=${command/ --clumped/}
+    command=${command/ --samples+([0-9])/ --samples 1}
     # shellcheck disable=SC2086 # several words
     runs 0 $command
     count=$((count + 1))

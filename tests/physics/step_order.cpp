@@ -115,7 +115,7 @@ TEST_CASE("second order in the step with collisions") {
   std::vector<double> errors(4, 0.0);
   for (int k = 0; k < starts; ++k) {
     std::uint64_t collisions = 0;
-    const Scene fine = gravity_scene(orbits / 32768);
+    const Scene fine = gravity_scene(orbits / 16384);
     const Patch reference = evolve(fine, pair_of(fine, k), orbits, &collisions);
     REQUIRE(collisions >= 1);
     for (int level = 0; level < 4; ++level) {
