@@ -39,7 +39,10 @@ public:
     finders::Finder* const replacement = observer_ ? observer_->replacement_finder() : nullptr;
     return replacement ? *replacement : *finder_;
   }
-  void release_contacts() { optimistic_.release(); }
+  void release_contacts() {
+    optimistic_.release();
+    broad_phase_.lists().release_interval();
+  }
   void release() { broad_phase_.lists().release(); }
   void set_step(double step, double kick_pull, double rest_pull);
   std::span<const SlowPair> slow_pairs() const { return outcome_.slow_pairs; }

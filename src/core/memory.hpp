@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace keeler {
 
@@ -20,5 +21,10 @@ void require_memory(double bytes, const std::string& what, const std::string& re
 /// Converts a count, computed from user input, to a size: rounds down, and throws as require_memory() if it is negative
 /// or NaN, or memory is missing for so many items of `bytes_each` (>= 0). `what` names the items.
 std::size_t affordable_size(double count, double bytes_each, const std::string& what, const std::string& remedy);
+
+/// Empties a vector and frees its memory, which `v = {}` keeps: that assigns an empty list.
+template<class T> void free_memory(std::vector<T>& v) {
+  std::vector<T>().swap(v);
+}
 
 } // namespace keeler

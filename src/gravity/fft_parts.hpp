@@ -11,6 +11,7 @@
 #include "wave_kernel.hpp"
 
 #include <keeler/core/exact_sum.hpp>
+#include <keeler/core/memory.hpp>
 #include <keeler/gravity/fft.hpp>
 
 #include <complex>
@@ -58,7 +59,7 @@ struct FftSolver::Parts {
     mesh.release_memory();
     by_columns.release_memory();
     by_waves.release_memory();
-    folded = {};
+    free_memory(folded);
   }
 
   /// Writes the accelerations of a tile's particles at their indices, and returns Σ m a over the tile in units of mass.

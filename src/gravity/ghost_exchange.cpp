@@ -1,5 +1,7 @@
 #include "ghost_exchange.hpp"
 
+#include <keeler/core/memory.hpp>
+
 #include <algorithm>
 #include <numeric>
 
@@ -81,7 +83,7 @@ void GhostExchange::append(std::vector<FoldedParticle>& particles, Buffers& rece
         assigned_from_[rank].push_back(static_cast<std::uint32_t>(particles.size()));
       particles.push_back(particle);
     }
-    std::vector<FoldedParticle>().swap(received[rank]);
+    free_memory(received[rank]);
   }
   assert(particles.size() == needed);
 }

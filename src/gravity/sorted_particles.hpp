@@ -5,6 +5,7 @@
 #include "mesh_kernels.hpp"
 
 #include <keeler/cells/sheared_cells.hpp>
+#include <keeler/core/memory.hpp>
 #include <keeler/gravity/solver.hpp>
 
 #include <cassert>
@@ -63,7 +64,7 @@ struct FoldedParticle {
 /// a rank changes with each solve.
 template<class Row> void resize_scratch(std::vector<Row>& rows, std::size_t count) {
   if (rows.capacity() < count) {
-    rows = {};
+    free_memory(rows);
     rows.reserve(count + count / 16);
   }
   rows.resize(count);

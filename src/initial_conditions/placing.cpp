@@ -4,6 +4,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/exact_sum.hpp>
+#include <keeler/core/memory.hpp>
 #include <keeler/core/parallel.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/scene/layer.hpp>
@@ -162,12 +163,12 @@ std::vector<Placing::Trial> Placing::send_to_owners(std::vector<Trial> trials) c
   std::vector<std::vector<Trial>> parcels(ranks.size());
   for (const Trial& trial : trials)
     parcels[slabs_.owner(trial.position)].push_back(trial);
-  trials = {};
+  free_memory(trials);
   std::vector<std::vector<Trial>> received = ranks.exchange(parcels);
-  parcels = {};
+  free_memory(parcels);
   for (std::vector<Trial>& parcel : received) {
     trials.insert(trials.end(), parcel.begin(), parcel.end());
-    parcel = {};
+    free_memory(parcel);
   }
   return trials;
 }

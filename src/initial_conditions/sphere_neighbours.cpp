@@ -2,6 +2,7 @@
 
 #include "size_levels.hpp"
 
+#include <keeler/core/memory.hpp>
 #include <keeler/core/parallel.hpp>
 
 #include <algorithm>
@@ -66,7 +67,7 @@ void SphereNeighbours::build(const std::vector<Sphere>& spheres, std::size_t own
       entries_[first_[pair.larger + 1]++] = pair.smaller;
       entries_[first_[pair.smaller.sphere + 1]++] = {pair.larger, -pair.smaller.image};
     }
-    block = {};
+    free_memory(block);
   }
   parallel_for(own, [&](std::size_t i) {
     std::sort(entries_.begin() + static_cast<std::ptrdiff_t>(first_[i]),

@@ -153,8 +153,8 @@ public:
   const finders::Finder& finder() const; ///< the one in use, which may be the observer's
   DriftCosts costs() const;              ///< since construction
 
-  /// Releases what only the contacts of the last step needed: before forces are computed, which need memory of their
-  /// own.
+  /// Releases what only the contacts of the last step needed, and the pairs that were picked for steps between two
+  /// kicks: before forces are computed, which need memory of their own.
   void release_contacts();
 
   /// Releases memory that the next steps would need again: before a large allocation.

@@ -24,7 +24,7 @@ bool NeighbourLists::begin(const Particles& particles, const ShearingBox& box, d
   bool updated = false;
   if (usable) {
     interval_.look_ahead(step());
-    updated = undisturbed && !interval_.steps().over() ? update(interval_.escaped()) : begin_interval();
+    updated = undisturbed && !interval_.over() ? update(interval_.escaped()) : begin_interval();
   }
   valid_ = updated || rebuild(were_valid);
   interval_.clear_escaped();

@@ -116,6 +116,8 @@ public:
     return nearest_image(step().particles.bodies[i], step().particles.bodies[j]);
   }
 
+  /// Frees what is made anew when paths have changed. Precondition: no step has begun.
+  void release_interval() { interval_.release(); }
   /// Forgets all lists and frees most of their memory. Precondition: no step has begun.
   void release();
   std::size_t bytes() const;

@@ -1,5 +1,6 @@
 #include "pruning_interval.hpp"
 
+#include <keeler/core/memory.hpp>
 #include <keeler/core/parallel.hpp>
 
 #include <algorithm>
@@ -23,7 +24,7 @@ std::vector<std::uint32_t> PruningInterval::begin(const SearchContext& step, int
   frame_ = line_frame(step.box, middle_);
   constexpr std::size_t chunk = 4096;
   const std::size_t count = step.particles.size();
-  assert(lines_.size() == count + kernel_padding);
+  lines_.resize(count + kernel_padding);
   std::vector<std::vector<std::uint32_t>> found((count + chunk - 1) / chunk);
   parallel_for(
       found.size(),
@@ -107,8 +108,8 @@ bool PruningInterval::follow_hit(const SearchContext& step, std::size_t i, doubl
 }
 
 void PruningInterval::release() {
-  lines_ = {};
-  pruned_ = {};
+  free_memory(lines_);
+  free_memory(pruned_);
 }
 
 std::size_t PruningInterval::bytes() const {

@@ -79,7 +79,10 @@ public:
   }
 
   std::vector<Line>& buffer() { return lines_; } ///< memory to be reused before begin()
+  /// Frees the lines and the pairs: the interval is over. Precondition: of the other calls begin_step(), look_ahead()
+  /// and buffer() precede the next begin().
   void release();
+  bool over() const { return steps_.over() || lines_.empty(); }
   std::size_t bytes() const;
   /// True if the bookkeeping is consistent, for so many particles.
   bool sound(std::size_t particles) const;

@@ -6,6 +6,8 @@
 
 #include "kernels.hpp"
 
+#include <keeler/core/memory.hpp>
+
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
@@ -41,7 +43,7 @@ public:
   bool outgrown() const { return entries_.size() > 2 * entries_laid_out_ + 4096; }
 
   /// Frees the entries. Precondition: of the other calls only lay_out() and size() follow.
-  void release() { entries_ = {}; }
+  void release() { free_memory(entries_); }
   std::size_t bytes() const { return ranges_.capacity() * sizeof(Range) + entries_.capacity() * sizeof(std::uint32_t); }
 
   /// True if the invariants hold. Slow.

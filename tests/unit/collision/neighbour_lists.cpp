@@ -281,6 +281,24 @@ TEST_CASE("elements that are not finite are refused, when the lists are built an
   }
 }
 
+// Also if paths go on undisturbed.
+TEST_CASE("an interval and lists that are released leave their memory, and are made again") {
+  ListedPatch patch({.count = 1000, .heat = 0.1, .step = 0.005, .hits = 0.01}, 1);
+  Seen seen;
+  drift(patch, 2, seen);
+  const std::size_t whole = patch.lists.bytes(), count = patch.particles.size();
+  REQUIRE(patch.undisturbed);
+  patch.lists.release_interval();
+  const std::size_t without_interval = patch.lists.bytes();
+  CHECK(without_interval <= whole - count * sizeof(collision::Line));
+  drift(patch, 2, seen);
+  CHECK(patch.lists.counts().rebuilds == 1);
+  patch.lists.release();
+  CHECK(patch.lists.bytes() < without_interval / 2);
+  drift(patch, 2, seen);
+  CHECK(patch.lists.counts().rebuilds == 2);
+}
+
 TEST_CASE("no particle, or a single one, has no pairs") {
   for (const std::size_t count : {0, 1}) {
     ListedPatch patch({.count = 100}, 1);
