@@ -54,7 +54,7 @@ FAULTS = [
           "many_steps", "the same bits as the plain twin: cold states that heat up within a step"),
     Fault("stale-window", "a stale list: a particle that leaves its skin some steps after a hit keeps its old list",
           "src/collision/neighbours/neighbour_lists.cpp",
-          "!interval_.steps().over() ? update(interval_.escaped()) :", "!interval_.steps().over() ? update({}) :",
+          "!interval_.over() ? update(interval_.escaped()) :", "!interval_.over() ? update({}) :",
           "collision", "at every step and after every hit the lists visit each pair that may touch once"),
     Fault("audit", "the audit of neighbours never finds one missing",
           "src/collision/drift_audit.cpp",
