@@ -3,6 +3,7 @@
 #include "optimistic_orbits.hpp"
 
 #include <keeler/core/counting_sort.hpp>
+#include <keeler/core/memory.hpp>
 #include <keeler/core/parallel.hpp>
 
 #include <algorithm>
@@ -161,8 +162,8 @@ std::uint64_t OptimisticLoop::max_partners() const {
 
 void OptimisticLoop::release() {
   state_ = OptimisticState();
-  assigned_ = std::vector<std::uint32_t>();
-  assigned_begins_ = std::vector<std::uint32_t>();
+  free_memory(assigned_);
+  free_memory(assigned_begins_);
   order_ = ContactOrder();
 }
 

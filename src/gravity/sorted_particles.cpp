@@ -106,8 +106,8 @@ void SortedParticles::sort_source(const Source& source, const ShearingBox& box, 
 
 void SortedParticles::release() {
   for (auto* const coordinates : {&x_, &y_, &z_})
-    *coordinates = std::vector<double>();
-  mass_ = std::vector<float>();
+    free_memory(*coordinates);
+  free_memory(mass_);
 }
 
 } // namespace keeler::gravity

@@ -6,7 +6,7 @@
 source "$(dirname "$0")/helpers.sh"
 small_scene
 sed -i 's/^end .*/end = 0.1/' "$work/scene.toml"
-sed '/^\[gravity\]/,/^solver/d' "$work/scene.toml" >"$work/plain.toml" # cheaper to study and to tune
+sed '/^\[gravity\]/,/^solver/d' "$work/scene.toml" >"$work/plain.toml" # cheaper to study
 printf 'scene = "%s/scene.toml"\nseeds = [1, 2]\n' "$work" >"$work/grid.toml"
 runs 0 run "$work/scene.toml" -o "$work/done"
 
@@ -22,12 +22,12 @@ words_for() {
   render) words=("$work/done" --movie --width 300) ;;
   resume | info | watch | analyze | report) words=("$work/done") ;;
   bench) words=(drift --count 200 --repeats 1) ;;
-  study) words=(box "$work/plain.toml" -o "$work/study" --quick --grow 0.02 --orbits 1.5) ;;
+  study) words=(step "$work/plain.toml" -o "$work/study" --quick --grow 0.02 --orbits 1.5) ;;
   sweep) words=("$work/grid.toml" -o "$work/sweep") ;;
   help) words=(run) ;;
   photometry) words=("$work/done" --elevation 20 --azimuth 0 --rays 1000) ;;
   occultation) words=("$work/done" --elevation 20 --azimuth "0,90" --tracks 2 --samples 4 --rays 4) ;;
-  tune) words=("$work/plain.toml" --orbits 0.1) ;;
+  tune) words=("$work/scene.toml" --orbits 0.1) ;;
   *) return 1 ;;
   esac
 }

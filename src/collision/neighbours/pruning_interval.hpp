@@ -9,6 +9,7 @@
 #include "listed_pairs.hpp"
 #include "reference_paths.hpp"
 
+#include <cassert>
 #include <span>
 #include <vector>
 
@@ -62,9 +63,11 @@ public:
   /// Apply LineSweep and LinePairFilter to the lines.
   std::size_t sweep(std::size_t i, const LineSpan& span, std::span<const std::uint32_t> indices,
                     std::uint32_t* kept) const {
+    assert(i < lines_.size());
     return kernels_.sweep(lines_[i], lines_.data(), frame_, span, indices.data(), indices.size(), kept);
   }
   std::size_t filter(const LineSpan& span, const LinePair* pairs, std::size_t count, LinePair* kept) const {
+    assert(!lines_.empty());
     return kernels_.filter(lines_.data(), frame_, span, pairs, count, kept);
   }
 
@@ -79,8 +82,8 @@ public:
   }
 
   std::vector<Line>& buffer() { return lines_; } ///< memory to be reused before begin()
-  /// Frees the lines and the pairs: the interval is over. Precondition: of the other calls begin_step(), look_ahead()
-  /// and buffer() precede the next begin().
+  /// Frees the lines and the pairs: the interval is over. Precondition: begin() follows before the next sweep() or
+  /// filter().
   void release();
   bool over() const { return steps_.over() || lines_.empty(); }
   std::size_t bytes() const;
