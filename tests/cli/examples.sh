@@ -16,7 +16,7 @@ follow() {
     [[ $command == *--lit* ]] && "$keeler" occultation nothing --elevation 20 2>&1 | grep -q "without Embree" && continue
     [[ $command == run* ]] && command+=" --set time.end=0.002"
     command=${command/ --clumped/}
-    command=${command/ --samples+([0-9])/ --samples 1}
+    command=${command/ --samples +([0-9])/ --samples 1}
     # shellcheck disable=SC2086 # several words
     runs 0 $command
     count=$((count + 1))

@@ -7,11 +7,13 @@ libraries='json\.exception|type_error|parse_error|std::|filesystem error|H5[A-Z]
 
 where=$work # the working folder
 gone=false  # it is removed before the program starts
+code=0      # of the last program that spoke
 
 # speaks NAME ARGUMENT...: the program ends by itself, with success or not, and prints only Keeler's messages
 speaks() {
-  local name=$1 code=0
+  local name=$1
   shift
+  code=0
   mkdir -p "$where"
   (cd "$where" && { ! $gone || rmdir "$where"; } && exec timeout 20 "$keeler" "$@") >"$work/out" 2>"$work/err" </dev/null || code=$?
   [ "$code" -le 4 ] || fail "$name: exit $code: $(tail -n 3 "$work/err")"
@@ -24,10 +26,9 @@ speaks() {
 
 # refused CODE NAME WORDS ARGUMENT...: as speaks, and the program ends with this code and prints the words
 refused() {
-  local expected=$1 name=$2 words=$3 code=0
+  local expected=$1 name=$2 words=$3
   shift 3
   speaks "$name" "$@"
-  "$keeler" "$@" >/dev/null 2>"$work/err" </dev/null || code=$?
   [ "$code" -eq "$expected" ] || fail "$name: exit $code instead of $expected: $(cat "$work/err")"
   grep -aqF -- "$words" "$work/err" || fail "$name: no '$words' in: $(cat "$work/err")"
 }
@@ -91,12 +92,16 @@ refused 4 "a summary of another type" "summary.json' holds something else than K
 cp "$work/kept/summary.json" "$work/run/summary.json"
 for json in '{"event": 5}' '{"event": "started", "end_orbits": "x", "orbits": [], "time": 3, "particles": -1.5}' '[]' '{"event": "started", "particles": "many"}'; do
   echo "$json" >>"$work/run/log.jsonl"
-  for command in watch info "info --json" report; do
+  for command in watch info "info --json"; do
     read -ra words <<<"$command"
     speaks "log.jsonl has $json, $command" "${words[@]}" "$work/run"
   done
+  tail -n 1 "$work/run/log.jsonl" >>"$work/lines"
   cp "$work/kept/log.jsonl" "$work/run/log.jsonl"
 done
+cat "$work/lines" >>"$work/run/log.jsonl" # all at once, since a page takes seconds
+speaks "log.jsonl has other things, report" report "$work/run"
+cp "$work/kept/log.jsonl" "$work/run/log.jsonl"
 mkdir "$work/study"
 for json in '{"study": 5}' '[]' '{"study": "kicks", "command": 7}'; do
   echo "$json" >"$work/study/study.json"

@@ -4,6 +4,7 @@
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
+sed -i 's/^size = .*/size = [30, 30]/; s/^count = .*/count = 150/' "$work/scene.toml" # eighteen runs of it
 kicks=(study kicks "$work/scene.toml" --quick --grow 0.3 --orbits 1.5)
 
 # without_cost FILE: prints the table without the columns of processor time and memory, which differ between runs
@@ -75,6 +76,7 @@ printf 'scene = "scene.toml"\n' >"$work/grid.toml"
 refuses "a sweep in a study" "holds no sweep" sweep "$work/grid.toml" -o "$work/whole"
 
 # Unsuitable scenes.
+small_scene
 sed '/^\[gravity\]/,/^solver/d' "$work/scene.toml" >"$work/plain.toml"
 none=$work/none
 refuses "kicks without gravity" 'no self-gravity, so it has no kick interval; add [gravity]' study kicks "$work/plain.toml" -o "$none"

@@ -19,7 +19,7 @@
 namespace keeler::study {
 namespace {
 
-constexpr double min_seconds = 0.02; // of calls that one measurement of the time per call averages over
+constexpr double min_seconds = 0.005; // of calls that one measurement of the time per call averages over
 
 template<class Measure> double median_of(int repeats, const Measure& measure) {
   std::vector<double> values;

@@ -150,7 +150,7 @@ TEST_CASE("the same bits any way: a moonlet, and particles that outrun the other
 
 TEST_CASE("the same bits any way: rows of touching spheres, each hit at its end at the same instant") {
   std::vector<test::Sphere> spheres;
-  const int rows = test::sanitized ? 10 : 40;
+  const int rows = test::sanitized ? 10 : 20;
   for (int row = 0; row < rows; ++row)
     for (int k = 0; k < 25; ++k)
       spheres.push_back(

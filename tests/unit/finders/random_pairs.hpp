@@ -19,7 +19,7 @@ namespace keeler::test {
 // Returns the number of pairs of all families to draw: the default, or KEELER_PAIRS of the environment.
 inline std::uint64_t pairs_asked_for() {
   const char* text = std::getenv("KEELER_PAIRS");
-  return text ? std::strtoull(text, nullptr, 10) : draws(120000);
+  return text ? std::strtoull(text, nullptr, 10) : draws(60000);
 }
 
 enum class Family { neighbours, hit, grazing, inflexion, tidal, co_orbital, bounced };
