@@ -39,6 +39,12 @@ prints() {
   grep -qF -- "$2" "$work/out" || fail "$1: no '$2' in: $(cat "$work/out")"
 }
 
+# no_controls NAME: the last command printed no control characters
+no_controls() {
+  LC_ALL=C grep -q '[[:cntrl:]]' <(cat "$work/out" "$work/err" | tr -d '\n') && fail "$1: control characters"
+  return 0
+}
+
 # one_line NAME WORDS: the last command printed exactly one message, besides progress and notes, and it contains the words
 one_line() {
   grep -vE '^[0-9.]+/[0-9.]+ orbits | % +[0-9:]+ left  |^ *[0-9]+ %  |^[0-9.]+ orbits .* contrast |^keeler: note: ' "$work/err" >"$work/said"

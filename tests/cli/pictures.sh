@@ -58,6 +58,7 @@ for _ in 1 2; do
     prints "plots" "$work/again.$ending"
   done
   runs 0 report "$work/run" -o "$work/again.html"
+  no_controls "report"
   runs 0 analyze "$work/run/snap_000000.hdf" --csv "$work/again.csv"
 done
 python3 - "$work" <<'END' || fail "files of plots"
@@ -103,7 +104,7 @@ for number in $(seq 1000 1300); do ln "$work/run/snap_000000.hdf" "$work/run/sna
 
 # Where mounting is permitted: a disk that fills in the middle.
 # shellcheck disable=SC2016 # that shell expands it
-on_small_disk='mount -t tmpfs -o size=60k none "$2/disk" || exit 99
+on_small_disk='mount -t tmpfs -o size=20k none "$2/disk" || exit 99
   "$1" render "$2/run" --movie --width 400 -o "$2/disk/$3" >"$2/out" 2>"$2/err"
   code=$?
   ls -A "$2/disk" >"$2/left" && exit $code'

@@ -32,6 +32,7 @@ study_until() {
 
 # Two seeds, two states, three settings.
 runs 0 "${kicks[@]}" -o "$work/whole" --jobs 2
+no_controls "study"
 for name in report.md report.html study.csv settings.csv figures; do
   prints "study" "$work/whole/$name"
   [ -e "$work/whole/$name" ] || fail "no $name"

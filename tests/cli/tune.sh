@@ -21,6 +21,7 @@ at_most "the force error" "$(number error_rms)" 5e-3
 at_most "the physics error" "$(number physics_error)" 0.2
 
 runs 0 tune "$scene" --orbits 0.3 --threads 1 --quality fast -o "$work/tuned.toml"
+no_controls "tune"
 prints "the file" "$work/tuned.toml"
 accepts "the tuned scene" check "$work/tuned.toml"
 grep -q '^# tune: ' "$work/tuned.toml" || fail "no comments: $(cat "$work/tuned.toml")"

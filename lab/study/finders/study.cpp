@@ -31,7 +31,7 @@ struct Plan {
 
 Plan plan_of(const FinderStudySettings& settings) {
   if (settings.quick)
-    return {std::min<std::size_t>(settings.count, 3000), {1e-3, 1.0 / 300.0, 1e-2}, 2, 4.0};
+    return {std::min<std::size_t>(settings.count, 3000), {1e-3, 1.0 / 300.0, 1e-2}, 2, 2.0};
   return {settings.count, {1e-4, 1.0 / 3000.0, 1e-3, 1.0 / 300.0, 1e-2}, 6, 100.0};
 }
 

@@ -1,5 +1,7 @@
 #include "gravity_states.hpp"
 
+#include "draws.hpp"
+
 #include <keeler/bench/gravity_choices.hpp>
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/simd.hpp>
@@ -60,7 +62,7 @@ TEST_CASE("the clumped state has wakes, and the forces in its tiles equal those 
             .amplitude > 0.1);
 
   const std::vector<std::size_t> targets =
-      diagnostics::draw_force_sample(diagnostics::gravity_problem(tile), 150, 20, 5.0).targets;
+      diagnostics::draw_force_sample(diagnostics::gravity_problem(tile), test::draws(150), 20, 5.0).targets;
   const std::vector<Vec3> of_tile = exact(tile, targets, 2);
   // measured 8e-10: the fits of the far images
   CHECK(rms_difference(exact(tile, targets, 3), of_tile) < 1e-7);
