@@ -59,7 +59,7 @@ class Bits(unittest.TestCase):
                 view.get("step", "POST")
                 state = view.wait_for(lambda state: state["orbits"] > before + 0.002 * (k - 0.5))
                 self.assertAlmostEqual(state["orbits"], before + 0.002 * k)
-            head, _ = view.frame("cluster")  # another colour, of a run that stands
+            head = view.shown("cluster")  # another colour, of a run that stands
             self.assertAlmostEqual(head["frame"]["orbits"], before + 0.006)
             view.get("limit?steps_per_second=20", "POST")
             view.get("resume", "POST")

@@ -75,6 +75,15 @@ class Viewed:
         size = int.from_bytes(body[:4], "little")
         return json.loads(body[4 : 4 + size]), body[4 + size :]
 
+    def shown(self, colour):
+        """The head of a frame, asked for as a page does, until there is one: between two steps there may be none."""
+        end = time.monotonic() + 60
+        while "frame" not in (head := self.frame(colour)[0]):
+            if time.monotonic() > end:
+                raise AssertionError(f"no frame within 60 s: {head}")
+            time.sleep(0.02)
+        return head
+
     def wait_for(self, condition, seconds=60):
         """Returns the first state that meets the condition."""
         end = time.monotonic() + seconds
