@@ -1,6 +1,6 @@
 """mutations [--check] [--only NAME...] [--write FILE]: builds each fault of faults.py into a copy of the sources
 and runs the test that must then fail. Prints a line a fault, and writes their rows of the page. Exit code 1 when a fault does
-not apply any more, does not compile, or is caught by nobody. --check: only whether each still applies."""
+not apply any more, does not compile, or is caught by nobody. --check: only whether each still applies and its test is there."""
 
 import argparse
 import os
@@ -43,6 +43,17 @@ def applied(fault, text):
     if count != 1:
         raise Unfit(f"{fault.name}: its text stands {count} times in {fault.file}, not once")
     return text.replace(fault.old, fault.new)
+
+
+def require_tests(faults):
+    """Each fault's test program is on a list of the build, and its case in a source."""
+    tests = SOURCE / "tests"
+    lists = "".join(made.read_text() for made in tests.rglob("CMakeLists.txt"))
+    programs = {name for names in re.findall(r"(?:keeler_test\(|IN ITEMS )([\w ]+?)(?:\s+SOURCES|\))", lists) for name in names.split()}
+    cases = {case for source in tests.rglob("*.cpp") for case in re.findall(r'^TEST_CASE\("(.*)"\)', source.read_text(), re.M)}
+    for fault in faults:
+        if fault.target not in programs or fault.case not in cases:
+            raise Unfit(f"{fault.name}: there is no test_{fault.target} with the case '{fault.case}'")
 
 
 def copy_sources(to):
@@ -154,6 +165,7 @@ def main():
     try:
         for fault in faults:
             applied(fault, (SOURCE / fault.file).read_text())
+        require_tests(faults)
         if options.check:
             print(f"{len(faults)} faults apply")
             return 0

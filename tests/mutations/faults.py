@@ -94,7 +94,7 @@ FAULTS = [
     Fault("certified-bound", "the certified search trusts half of the bound on curvature",
           "src/finders/search/certified.hpp",
           "const double m = positive * down - negative / down;", "const double m = positive * down - 0.5 * negative;",
-          "finders", "the certified finder finds every first contact, grazing ones too, and invents none"),
+          "contacts", "the certified finder finds every first contact, grazing ones too, and invents none"),
     Fault("kick-half", "a kick on the wrong half: it is given a step after the boundary that it belongs to",
           "src/simulation/simulation.cpp",
           "const Rotation rotation = boundary().rotation();",
