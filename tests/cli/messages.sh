@@ -7,7 +7,7 @@ libraries='json\.exception|type_error|parse_error|std::|filesystem error|H5[A-Z]
 
 where=$work # the working folder
 gone=false  # it is removed before the program starts
-code=0      # of the last program that spoke
+code=0      # speaks sets it to the exit code
 
 # speaks NAME ARGUMENT...: the program ends by itself, with success or not, and prints only Keeler's messages
 speaks() {
@@ -99,7 +99,7 @@ for json in '{"event": 5}' '{"event": "started", "end_orbits": "x", "orbits": []
   tail -n 1 "$work/run/log.jsonl" >>"$work/lines"
   cp "$work/kept/log.jsonl" "$work/run/log.jsonl"
 done
-cat "$work/lines" >>"$work/run/log.jsonl" # all at once, since a page takes seconds
+cat "$work/lines" >>"$work/run/log.jsonl" # a page takes seconds, so one is drawn for all of them
 speaks "log.jsonl has other things, report" report "$work/run"
 cp "$work/kept/log.jsonl" "$work/run/log.jsonl"
 mkdir "$work/study"

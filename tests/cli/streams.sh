@@ -35,7 +35,7 @@ for command in "${commands[@]}" "${refused[@]}"; do
   if [ ! -p "$work/pipe" ] || [ ! -h "$work/link" ]; then fail "$command: the pipe was replaced"; fi
   rm "$work/pipe" "$work/link"
   for name in - /dev/stdout; do
-    [[ $command == html* && $name == - ]] && continue # two seconds; every command takes both names the same way
+    [[ $command == html* && $name == - ]] && continue # a page takes two seconds, and every command takes both names the same way
     if [ "$code" -eq 2 ]; then
       refuses "$command $name" "/dev/stdout' cannot take HDF5 (it is not a file on a disk" "${words[@]}" "$name"
       continue

@@ -4,7 +4,7 @@
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
-sed -i 's/^size = .*/size = [30, 30]/; s/^count = .*/count = 150/' "$work/scene.toml" # eighteen runs of it
+sed -i 's/^size = .*/size = [30, 30]/; s/^count = .*/count = 150/' "$work/scene.toml" # the studies run it often
 kicks=(study kicks "$work/scene.toml" --quick --grow 0.3 --orbits 1.5)
 
 # without_cost FILE: prints the table without the columns of processor time and memory, which differ between runs
@@ -54,6 +54,7 @@ same_state "by hand" "$work/whole/runs/$name" "$work/by_hand"
 study_until "runs/kick-*/checkpoint_*.h5" "$work/killed"
 kill -9 "$study"
 wait "$study" 2>/dev/null
+[ -e "$work/killed/report.md" ] && fail "the study had ended before it was killed"
 runs 0 "${kicks[@]}" -o "$work/killed"
 same_tables "killed" "$work/killed"
 study_until "runs/grow*/checkpoint_*.h5" "$work/stopped"

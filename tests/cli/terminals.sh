@@ -1,6 +1,6 @@
 #!/bin/bash
 # terminals.sh KEELER SOURCE_DIR: every command of `keeler --help`, with its progress on terminals of 40 and 120 columns and
-# through a pipe: no line of progress is wider than the terminal, a pipe gets no control characters, exit codes are right;
+# through a pipe (three that take seconds: on one of 40 columns): no line of progress is wider than the terminal, a pipe gets no control characters, exit codes are right;
 # and the effect of -q and -v.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
@@ -48,7 +48,7 @@ while read -r command; do
       >"$work/drawn" 2>"$work/err" </dev/null || fail "$command, $columns columns: $(tail -n 3 "$work/err" "$work/drawn")"
   done
   rm -rf "$work/sweep" "$work/study"
-  [ "$widths" = 40 ] && continue # in their own tests: tune.sh, study_scene.sh, pictures.sh
+  [ "$widths" = 40 ] && continue # tune.sh, study_scene.sh and pictures.sh look at what these print elsewhere
   "$keeler" "$command" "${words[@]}" </dev/null 2>&1 | cat >"$work/piped"
   code=${PIPESTATUS[0]}
   [ "$code" -eq 0 ] || fail "$command in a pipe: $(tail -n 3 "$work/piped")"

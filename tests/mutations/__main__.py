@@ -53,7 +53,7 @@ def require_tests(faults):
     cases = {case for source in tests.rglob("*.cpp") for case in re.findall(r'^TEST_CASE\("(.*)"\)', source.read_text(), re.M)}
     for fault in faults:
         if fault.target not in programs or fault.case not in cases:
-            raise Unfit(f"{fault.name}: there is no test_{fault.target} with the case '{fault.case}'")
+            raise Unfit(f"{fault.name}: there is no program test_{fault.target}, or no case '{fault.case}'")
 
 
 def copy_sources(to):

@@ -30,7 +30,7 @@ class Tutorial(unittest.TestCase):
 
     def follow(self, kind, block):
         if kind == "sh":
-            return self.do("bash", "-e", "-c", block.replace("tuned.toml --orbits 1", "tuned.toml --orbits 0.3"))  # for the time
+            return self.do("bash", "-e", "-c", block.replace("tuned.toml --orbits 1", "tuned.toml --orbits 0.3"))  # it takes a third of the time
         if kind == "python":
             return self.do(sys.executable, "-c", block)
         if kind == "toml":

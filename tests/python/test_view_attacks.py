@@ -162,26 +162,35 @@ class Crowds(unittest.TestCase):
             Path(folder, "scene.toml").write_text(scene)
             with Viewed(Path(folder, "scene.toml"), "--set", "time.end=1000") as view:
                 view.wait_for(lambda state: state["stage"] == "running")
-                connections, cut = [], 0
+                connections = []
                 for _ in range(count):
                     connection = socket.socket()
                     connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
                     connection.settimeout(5)
                     connection.connect(("127.0.0.1", view.port))
                     connections.append(connection)
-                view.get("pause", "POST")  # the run needs the processor no less than other tests
-                time.sleep(0.2)
-                before, end = view.state()["orbits"], time.monotonic() + seconds
-                while time.monotonic() < end:
-                    for connection in connections[:]:
-                        try:
-                            what(view, connection)
-                        except (ConnectionError, BlockingIOError, TimeoutError):
-                            connections.remove(connection)
-                            connection.close()
-                            cut += 1
-                    time.sleep(0.2)
-                view.get("resume", "POST")  # a page of a user is served
+                cut = 0
+
+                def go_on(seconds):
+                    nonlocal cut
+                    end = time.monotonic() + seconds
+                    while time.monotonic() < end:
+                        for connection in connections[:]:
+                            try:
+                                what(view, connection)
+                            except (ConnectionError, BlockingIOError, TimeoutError):
+                                connections.remove(connection)
+                                connection.close()
+                                cut += 1
+                        time.sleep(0.2)
+
+                before = view.state()["orbits"]
+                go_on(1)
+                view.wait_for(lambda state: state["orbits"] > before)  # so does the run
+                view.get("pause", "POST")  # other tests need the processor meanwhile
+                go_on(seconds - 1)
+                before = view.state()["orbits"]  # a page of a user is served
+                view.get("resume", "POST")
                 view.wait_for(lambda state: state["orbits"] > before)
                 for connection in connections:
                     connection.close()

@@ -154,7 +154,7 @@ std::vector<Row> friction() {
 } // namespace
 
 std::vector<Subject> overstability_subjects() {
-  return {{"overstability-decay", "Viscous overstability", false, decay},
+  return {{"overstability-decay", "Viscous overstability", true, decay},
           {"overstability", "Viscous overstability", false, growth_by_length},
           {"overstability-wakes", "Viscous overstability", false, overstability_or_wakes},
           {"overstability-friction", "Viscous overstability", false, friction}};

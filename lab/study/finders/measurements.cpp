@@ -19,8 +19,6 @@
 namespace keeler::study {
 namespace {
 
-constexpr double min_seconds = 0.005; // of calls that one measurement of the time per call averages over
-
 template<class Measure> double median_of(int repeats, const Measure& measure) {
   std::vector<double> values;
   for (int repeat = 0; repeat < repeats; ++repeat)
@@ -125,7 +123,7 @@ private:
 };
 
 // Returns the median time per call (ns) of every finder on the same pairs, measured in turn.
-Json times_per_call(const bench::PairSet& pairs, int repeats) {
+Json times_per_call(const bench::PairSet& pairs, const StudyState& state, int repeats) {
   assert(repeats > 0);
   std::vector<std::unique_ptr<finders::Finder>> finders;
   for (const finders::FinderEntry& entry : finders::finder_table())
@@ -133,7 +131,7 @@ Json times_per_call(const bench::PairSet& pairs, int repeats) {
   std::vector<std::vector<double>> times(finders.size());
   for (int repeat = 0; repeat < repeats; ++repeat)
     for (std::size_t k = 0; k < finders.size(); ++k)
-      times[k].push_back(ns_per_call(pairs, *finders[k], min_seconds));
+      times[k].push_back(ns_per_call(pairs, *finders[k], state.call_seconds));
   Json json;
   for (std::size_t k = 0; k < finders.size(); ++k)
     json[finders::finder_table()[k].name] = statistics::median(times[k]);
@@ -196,7 +194,7 @@ std::vector<std::string> all_finders() {
 Json timed_run(const StudyState& state, double step, const std::string& finder) {
   const Scene scene = state.timed(step, finder);
   const bench::PairSet pairs = first_pairs(state, scene, true);
-  const double call = ns_per_call(pairs, *finders::make_finder(finder), min_seconds);
+  const double call = ns_per_call(pairs, *finders::make_finder(finder), state.call_seconds);
   return {{"cpu_s", run_seconds(state, scene, true)}, {"ns_per_call", call}};
 }
 
@@ -263,7 +261,7 @@ Json call_details(const StudyState& state, double step, int repeats) {
     });
   }
   finders::MotionSearch<UnrejectedMotion, finders::CertifiedSearch> search;
-  const double alone = median_of(repeats, [&] { return ns_per_call(pairs, search, min_seconds); });
+  const double alone = median_of(repeats, [&] { return ns_per_call(pairs, search, state.call_seconds); });
   return {{"begin_ns_per_particle", begin}, {"certified_search_alone_ns_per_call", alone}};
 }
 
@@ -309,7 +307,7 @@ Json rejection(const StudyState& state, double step, int repeats) {
           {"contacts", verdict_on(left, *certified).true_hits},
           {"cpu_s_every_candidate", times_before},
           {"cpu_s_after_rejection", times_after},
-          {"ns_per_call_after_rejection", times_per_call(left, repeats)}};
+          {"ns_per_call_after_rejection", times_per_call(left, state, repeats)}};
 }
 
 Json local_times(const StudyState& state, double step, double moved_fraction, int repeats) {
@@ -335,7 +333,7 @@ Json local_times(const StudyState& state, double step, double moved_fraction, in
           {"false_hits", false_hits},
           {"late", late},
           {"evaluations_per_call", evaluations},
-          {"ns_per_call", times_per_call(pairs, repeats)}};
+          {"ns_per_call", times_per_call(pairs, state, repeats)}};
 }
 
 Json drift_of_means(const PerturbedRing& ring, const std::string& path) {

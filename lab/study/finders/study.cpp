@@ -26,13 +26,14 @@ struct Plan {
   std::vector<double> steps; // orbits; a whole number of each makes up study_orbits
   int repeats;
   double drift_orbits;
+  double call_seconds;
   std::vector<double> moved_fractions = {0.0, 0.25, 0.5, 0.75, 1.0};
 };
 
 Plan plan_of(const FinderStudySettings& settings) {
   if (settings.quick)
-    return {std::min<std::size_t>(settings.count, 3000), {1e-3, 1.0 / 300.0, 1e-2}, 2, 2.0};
-  return {settings.count, {1e-4, 1.0 / 3000.0, 1e-3, 1.0 / 300.0, 1e-2}, 6, 100.0};
+    return {std::min<std::size_t>(settings.count, 3000), {1e-3, 1.0 / 300.0, 1e-2}, 2, 2.0, 0.005};
+  return {settings.count, {1e-4, 1.0 / 3000.0, 1e-3, 1.0 / 300.0, 1e-2}, 6, 100.0, 0.02};
 }
 
 Json options_of(const Plan& plan) {
@@ -189,7 +190,10 @@ std::optional<std::vector<StudyState>> states_unless_stopped(const FinderStudySe
                                                              const std::atomic<bool>& stop) {
   try {
     const Interruptible by_stop(stop);
-    return study_states(settings.folder / "states", plan.count, settings.notice);
+    std::vector<StudyState> states = study_states(settings.folder / "states", plan.count, settings.notice);
+    for (StudyState& state : states)
+      state.call_seconds = plan.call_seconds;
+    return states;
   } catch (const Interrupted&) {
     return std::nullopt;
   }
