@@ -186,7 +186,7 @@ class Crowds(unittest.TestCase):
 
                 before = view.state()["orbits"]
                 go_on(1)
-                view.wait_for(lambda state: state["orbits"] > before)  # so does the run
+                view.wait_for(lambda state: state["orbits"] > before)  # the run goes on beside the crowd
                 view.get("pause", "POST")  # other tests need the processor meanwhile
                 go_on(seconds - 1)
                 before = view.state()["orbits"]  # a page of a user is served
