@@ -70,13 +70,13 @@ Unlocked::~Unlocked() {
 }
 
 void end_other_threads() {
-  Keyboard::end_others();
   UnlockedThreads& all = unlocked_threads();
   if (all.process != getpid())
     return;
   const pybind11::gil_scoped_release unlocked;
   std::unique_lock lock(all.guard);
-  all.ends = std::this_thread::get_id();
+  all.ends = std::this_thread::get_id(); // before the others are interrupted, so that all of these block
+  Keyboard::end_others();
   all.fewer.wait(lock, [&] { return all.count == 0; });
 }
 
