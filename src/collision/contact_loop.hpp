@@ -9,6 +9,7 @@
 #include "ablation.hpp"
 #include "contact.hpp"
 #include "contact_law.hpp"
+#include "neighbours/path_lines.hpp"
 #include "step_context.hpp"
 
 #include <keeler/collision/events.hpp>
@@ -156,10 +157,11 @@ private:
       impulse += sliding.impulse;
       contact.energy_lost = sliding.energy_lost;
     }
-    contact.azimuthal_gain = azimuthal_gain(a, -impulse / a.mass, f, rotation);
-    contact.azimuthal_gain += azimuthal_gain(b, impulse / b.mass, f, rotation);
-    kick(a.elements, -impulse / a.mass, f, rotation);
-    kick(b.elements, impulse / b.mass, f, rotation);
+    const Vec3 change_a = -impulse / a.mass, change_b = impulse / b.mass; // of the velocities
+    contact.azimuthal_gain = azimuthal_gain(a, change_a, f, rotation);
+    contact.azimuthal_gain += azimuthal_gain(b, change_b, f, rotation);
+    kick(a.elements, change_a, f, rotation);
+    kick(b.elements, change_b, f, rotation);
 
     const double distance = a.radius + b.radius;
     contact.fast = law.rebound.fast;
@@ -231,8 +233,7 @@ private:
       throw InvariantError(fmt::format(
           "particle {} collided more than {} times in one step (an event storm); raise collisions.elastic_below_speed",
           step_.particles.ids[i], max_collisions));
-    const State then = state_at(elements, step_.frequencies, Rotation());
-    if (!(then.position.allFinite() && then.velocity.allFinite()))
+    if (!is_finite(elements))
       throw InvariantError(
           fmt::format("a collision left particle {} with elements that are not finite", step_.particles.ids[i]));
     orbits_.change(i, elements, time);

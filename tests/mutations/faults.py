@@ -81,7 +81,7 @@ FAULTS = [
           "any_way", "the same bits any way: dense states of rough spheres, whose spins are rolled back with their orbits"),
     Fault("impulse", "the two impulses of a contact are not opposite",
           "src/collision/contact_loop.hpp",
-          "kick(b.elements, impulse / b.mass, f, rotation);", "kick(b.elements, (1.0 + 1e-9) * impulse / b.mass, f, rotation);",
+          "kick(b.elements, change_b, f, rotation);", "kick(b.elements, (1.0 + 1e-9) * change_b, f, rotation);",
           "collision", "collisions keep the sums that mechanics keeps, and lose the energy that they book"),
     Fault("energy-book", "the energy lost in a contact is booked as if it did not rebound",
           "src/collision/contact_loop.hpp",
