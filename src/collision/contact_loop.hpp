@@ -9,7 +9,6 @@
 #include "ablation.hpp"
 #include "contact.hpp"
 #include "contact_law.hpp"
-#include "neighbours/path_lines.hpp"
 #include "step_context.hpp"
 
 #include <keeler/collision/events.hpp>
@@ -233,7 +232,8 @@ private:
       throw InvariantError(fmt::format(
           "particle {} collided more than {} times in one step (an event storm); raise collisions.elastic_below_speed",
           step_.particles.ids[i], max_collisions));
-    if (!is_finite(elements))
+    const State then = state_at(elements, step_.frequencies, Rotation());
+    if (!(then.position.allFinite() && then.velocity.allFinite()))
       throw InvariantError(
           fmt::format("a collision left particle {} with elements that are not finite", step_.particles.ids[i]));
     orbits_.change(i, elements, time);

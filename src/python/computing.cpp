@@ -71,8 +71,10 @@ Unlocked::~Unlocked() {
 
 void end_other_threads() {
   UnlockedThreads& all = unlocked_threads();
-  if (all.process != getpid())
+  if (all.process != getpid()) {
+    Keyboard::end_others();
     return;
+  }
   const pybind11::gil_scoped_release unlocked;
   std::unique_lock lock(all.guard);
   all.ends = std::this_thread::get_id(); // before the others are interrupted, so that all of these block
