@@ -67,11 +67,10 @@ std::vector<std::string> notes(From s) {
   if (const std::optional<forces::SatellitePassage> passage =
           advice::unresolved_passage(s.scene, 0.0, s.simulation.orbits()))
     all.push_back(advice::in_words(*passage));
-  // The loss in such contacts depends on the kick interval too (docs/hard-spheres.md), so the energy balance decides.
   if (!carries(s) && unresolved_fraction(s) > too_many)
     all.push_back(
-        fmt::format("{} % of the contacts are slower than one kick of the pair's own gravity: where the energy "
-                    "balance is above 1, set gravity.resting_contacts to \"carried\", or kick more often",
+        fmt::format("{} % of the contacts are slower than one kick of the pair's own gravity: spheres rest on each "
+                    "other, and gravity.resting_contacts = \"carried\" may take less time",
                     format_number(100.0 * unresolved_fraction(s), 2)));
   if (collisions(s).gave_up > 0 || s.largest_overlap > 1e-8)
     all.push_back(fmt::format("the collision finder gave up on {} {}, and may have missed contacts",

@@ -11,9 +11,8 @@
 
 namespace keeler::scene {
 
-/// Returns the energy that kicks give to contacts, and these lose at once, over the work of the shear if all contacts
-/// bounce. `kick_interval` is in orbits.
-double excess_of_bouncing(double optical_depth, double hill_parameter, double kick_interval);
+/// Returns the energy that kicks give to bouncing contacts over the work of the shear. `kick_interval` is in orbits.
+double energy_of_kicks(double optical_depth, double hill_parameter, double kick_interval);
 
 /// True if grains stay on a body: it is much larger than they are, and the mutual Hill radius is at least the radius
 /// sum.
