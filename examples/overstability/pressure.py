@@ -32,7 +32,9 @@ def pressure(run):
             log = file["Contacts"]
             later = log["Time"][:] > SINCE
             contacts += numpy.sum(numpy.abs(log["NormalX"][:] * log["ImpulseX"][:])[later]) * 2 * radius
-            last = max(last, log["Time"][:].max())
+            last = max(last, log["Time"][:].max(initial=0.0))
+    if not moving or last == SINCE:
+        sys.exit(f"{run}: no snapshots or no logged contacts after orbit {SINCE:g}")
     time = (last - SINCE) * 2 * math.pi / omega
     return mass.sum() / area, numpy.mean(moving), contacts / (area * time), omega
 

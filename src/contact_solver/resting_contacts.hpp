@@ -1,8 +1,8 @@
 // Contacts at rest: pairs of spheres with a rebound that a single kick reverses. The drift cannot resolve them: they
-// would bounce once per kick interval and dissipate what the kick has just given them. This solver holds each such pair
-// at contact until the next kick, by an impulse along the line of centres that acts together with the kick (non-smooth
-// contact dynamics: Moreau 1988, Jean 1999; Preclik & Rüde 2015; the scheme is SHAKE, Ryckaert et al. 1977, for
-// constraints that only push). docs/dev/contact-solver.md.
+// would bounce in each kick interval again, and rattle. This solver holds each such pair at contact until the next
+// kick, by an impulse along the line of centres that acts together with the kick (non-smooth contact dynamics: Moreau
+// 1988, Jean 1999; Preclik & Rüde 2015; the scheme is SHAKE, Ryckaert et al. 1977, for constraints that only push).
+// docs/dev/contact-solver.md.
 //
 // Invariants: pairs are sorted by ids, low < high; impulses push and never pull; no result depends on memory order or
 // threads; RestingState holds all that a restart needs.

@@ -68,10 +68,11 @@ std::vector<std::string> notes(From s) {
           advice::unresolved_passage(s.scene, 0.0, s.simulation.orbits()))
     all.push_back(advice::in_words(*passage));
   if (!carries(s) && unresolved_fraction(s) > too_many)
-    all.push_back(
-        fmt::format("{} % of the contacts are slower than one kick of the pair's own gravity: spheres rest on each "
-                    "other, and gravity.resting_contacts = \"carried\" may take less time",
-                    format_number(100.0 * unresolved_fraction(s), 2)));
+    all.push_back(fmt::format(
+        "{} % of the contacts are slower than one kick of the pair's own gravity: kick more often for "
+        "viscosities; where spheres rest on each other, gravity.resting_contacts = \"carried\" may take less "
+        "time",
+        format_number(100.0 * unresolved_fraction(s), 2)));
   if (collisions(s).gave_up > 0 || s.largest_overlap > 1e-8)
     all.push_back(fmt::format("the collision finder gave up on {} {}, and may have missed contacts",
                               collisions(s).gave_up, collisions(s).gave_up == 1 ? "search" : "searches"));

@@ -11,7 +11,8 @@
 
 namespace keeler::scene {
 
-/// Returns the energy that kicks give to bouncing contacts over the work of the shear. `kick_interval` is in orbits.
+/// Returns the energy that kicks give to bouncing contacts over the work of the shear, by a fit. `hill_parameter` is
+/// r_h; `kick_interval` is in orbits.
 double energy_of_kicks(double optical_depth, double hill_parameter, double kick_interval);
 
 /// True if grains stay on a body: it is much larger than they are, and the mutual Hill radius is at least the radius

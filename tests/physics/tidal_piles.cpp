@@ -97,5 +97,5 @@ TEST_CASE("a pile rests at r_h 1.25, and tides tear it at 0.7 and 1.0") {
   CHECK(held.share == 1.0);
   CHECK(held.pairs_at_rest > 2 * count); // more than hold it up at random places
   CHECK(held.speed < 0.05);              // 0.9 where contacts bounce
-  CHECK(held.lost < 0.01);               // 0.8 where they bounce
+  CHECK(held.lost < 0.01);
 }
