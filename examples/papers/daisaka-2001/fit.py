@@ -12,7 +12,7 @@ import json
 import math
 import sys
 
-HILL = {254.8: 0.7, 380.4: 0.8, 541.6: 0.9, 742.9: 1.0}  # r_h of each density, in this planet's A ring
+HILL = {254.8: 0.7, 380.4: 0.8, 456.2: 0.85, 541.6: 0.9}  # r_h of each density, in this planet's A ring
 
 
 def points(path):
