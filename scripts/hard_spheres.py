@@ -150,7 +150,7 @@ def pile():
     for row in sorted(rows("pile"), key=lambda r: (r["collisions.restitution"], int(r["gravity.kick_every"]), r["carried"])):
         run = RUNS / "pile" / "runs" / row["run"]
         law = row["collisions.restitution"]
-        words = "0.5" if "constant" in law else "Bridges 0.34" + (", at most 0.9" if "largest" in law else "")
+        words = "0.5" if "constant" in law else "Bridges 0.34" + (", at most 0.9" if "max_coefficient" in law else "")
         body.append([words, f"{int(row['gravity.kick_every'])}e-3", "carried" if row["carried"] else "bounced",
                      f"{lost_rate(run):.3f}", f"{random_speed(run):.3f}", number(row["collisions_per_particle_orbit"], 2),
                      number(row["overlap"], 2), number(row["cost"])])
