@@ -27,6 +27,13 @@ void RestingContacts::note(const Particles& particles, const collision::SlowPair
     noted_.push_back({{low, high}, pair.low, pair.high});
 }
 
+// Sorts the recorded pairs by ids and drops repetitions: a pair may touch many times in an interval.
+void RestingContacts::sort_noted() {
+  std::sort(noted_.begin(), noted_.end(), [](const Noted& a, const Noted& b) { return a.ids < b.ids; });
+  noted_.erase(std::unique(noted_.begin(), noted_.end(), [](const Noted& a, const Noted& b) { return a.ids == b.ids; }),
+               noted_.end());
+}
+
 void RestingContacts::share_noted(const Communicator& ranks) {
   noted_ = ranks.gather_on_all(std::span<const Noted>(noted_));
   indices_known_ = false;
@@ -48,6 +55,7 @@ void RestingContacts::persist(RestingState& state, const RestingStep& step,
   if (!work_)
     work_ = std::make_unique<Work>();
   Work& w = *work_;
+  sort_noted();
   w.find_members(state, noted_, step.particles, indices_known_);
   indices_known_ = true;
   w.read_kicks(step);

@@ -83,6 +83,9 @@ private:
     std::uint32_t low, high; // indices of the particles
   };
   struct Work;
+
+  void sort_noted();
+
   std::vector<Noted> noted_;
   bool indices_known_ = false;
   std::unique_ptr<Work> work_; // null while no pair rests

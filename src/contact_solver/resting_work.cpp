@@ -1,8 +1,10 @@
 #include "resting_work.hpp"
 
 #include "bounded_impulses.hpp"
+#include "clusters.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/parallel.hpp>
 
 #include <fmt/format.h>
 
@@ -65,9 +67,8 @@ void RestingContacts::Work::read_kicks(const RestingStep& step) {
 }
 
 // Merges the pairs at rest with the noted ones, each once, in the order of the ids.
-void RestingContacts::Work::list_pairs(const RestingState& state, std::vector<Noted>& noted) {
+void RestingContacts::Work::list_pairs(const RestingState& state, const std::vector<Noted>& noted) {
   assert(std::is_sorted(state.pairs.begin(), state.pairs.end()));
-  std::sort(noted.begin(), noted.end(), [](const Noted& a, const Noted& b) { return a.ids < b.ids; });
   pairs.clear();
   const auto add = [&](const RestingPair& ids, double impulse, bool is_new) {
     PairAtRest p;
@@ -169,23 +170,47 @@ void RestingContacts::Work::classify_pairs(const RestingStep& step) {
   pairs = std::move(resting);
 }
 
-// Finds the impulses that bring all pairs to their targets at the next kick: a prediction to first order in the
-// impulses, corrected with exact epicycles.
+// Finds the impulses that bring all pairs to their targets at the next kick. Clusters do not depend on each other, so
+// each takes only the iterations that it needs.
 void RestingContacts::Work::solve(const RestingStep& step) {
-  const Rotation now(step.frequencies, -step.to_epoch), then(step.frequencies, step.interval - step.to_epoch);
   std::vector<Joint> joints;
   std::vector<PairAtRest*> held;
-  std::vector<double> impulses, required, tolerances;
   for (PairAtRest& p : pairs)
     if (-p.speed <= p.max_closing_speed) {
       joints.push_back({p.low, p.high, p.normal});
       held.push_back(&p);
-      impulses.push_back(p.impulse);
-      tolerances.push_back(gap_tolerance * p.min_gap / step.interval);
     }
+  std::fill(velocity_changes.begin(), velocity_changes.end(), Vec3::Zero());
+  const Clusters clusters(joints, members.size());
+  parallel_for(
+      clusters.size(), [&](std::size_t k) { solve(clusters, k, held, step); }, 16);
+}
+
+// Solves one cluster: a prediction to first order in the impulses, corrected with exact epicycles.
+void RestingContacts::Work::solve(const Clusters& clusters, std::size_t cluster, std::span<PairAtRest* const> all_held,
+                                  const RestingStep& step) {
+  const Rotation now(step.frequencies, -step.to_epoch), then(step.frequencies, step.interval - step.to_epoch);
+  std::vector<Joint> joints;
+  std::vector<PairAtRest*> held;
+  std::vector<double> impulses, required, tolerances, masses_inverted;
+  for (const std::uint32_t c : clusters.joints(cluster)) {
+    PairAtRest& p = *all_held[c];
+    joints.push_back({clusters.place(p.low), clusters.place(p.high), p.normal});
+    held.push_back(&p);
+    impulses.push_back(p.impulse);
+    tolerances.push_back(gap_tolerance * p.min_gap / step.interval);
+  }
+  for (const std::uint32_t body : clusters.bodies(cluster))
+    masses_inverted.push_back(inverse_masses[body]);
   required.resize(held.size());
-  BoundedImpulses network(joints, inverse_masses);
-  network.apply(impulses, velocity_changes);
+  BoundedImpulses network(joints, masses_inverted);
+  std::vector<Vec3> changes(masses_inverted.size());
+  const auto apply_impulses = [&] {
+    network.apply(impulses, changes);
+    for (std::size_t b = 0; b < changes.size(); ++b)
+      velocity_changes[clusters.bodies(cluster)[b]] = changes[b];
+  };
+  apply_impulses();
   for (int correction = 0; correction < max_corrections; ++correction) {
     bool done = correction > 0;
     for (std::size_t c = 0; c < held.size(); ++c) {
@@ -201,7 +226,7 @@ void RestingContacts::Work::solve(const RestingStep& step) {
           "no impulses balance the kick of {} contacts at rest (the particles are jammed in the box); make the box "
           "larger, or set gravity.resting_contacts to \"bounced\"",
           held.size()));
-    network.apply(impulses, velocity_changes);
+    apply_impulses();
   }
   for (std::size_t c = 0; c < held.size(); ++c)
     held[c]->impulse = impulses[c];

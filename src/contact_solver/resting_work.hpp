@@ -9,9 +9,12 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace keeler::contact_solver {
+
+class Clusters;
 
 /// A particle that may rest.
 struct Member {
@@ -48,11 +51,12 @@ struct RestingContacts::Work {
   void find_members(const RestingState& state, const std::vector<Noted>& noted, const Particles& particles,
                     bool indices_known);
   void read_kicks(const RestingStep& step);
-  void list_pairs(const RestingState& state, std::vector<Noted>& noted);
+  void list_pairs(const RestingState& state, const std::vector<Noted>& noted);
   void update_geometry(const RestingStep& step);
   void apply_friction(const RestingStep& step, const collision::Friction& friction, CollisionTally& tally);
   void classify_pairs(const RestingStep& step);
   void solve(const RestingStep& step);
+  void solve(const Clusters& clusters, std::size_t cluster, std::span<PairAtRest* const> held, const RestingStep& step);
   void distribute(RestingState& state, const RestingStep& step, const std::vector<Vec3>& kicks, bool after,
                   CollisionTally& tally);
 
