@@ -47,7 +47,7 @@ std::string resting_word(Checked c) {
 
 // Returns the reason of the default, and which one it is if the scene has chosen otherwise.
 std::string resting_reason(Checked c) {
-  const scene::RestingChoice choice = choose_resting_contacts(c.start, c.scene);
+  const scene::RestingChoice choice = choose_resting_contacts(c.start, c.scene.planet);
   if (choice.carried == c.scene.gravity->carries())
     return choice.reason;
   return (choice.carried ? "by default they are carried: " : "by default they bounce: ") + choice.reason;

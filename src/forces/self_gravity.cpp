@@ -140,8 +140,9 @@ std::vector<Key> gravity_keys() {
        .fallback = "\"auto\"",
        .meaning =
            "contacts that a kick does not resolve: carried, by impulses that act with it, or bounced as all others; "
-           "auto: carried where aggregates last (r_h of 1 or more), where grains stay on a moonlet, and where optical "
-           "depth, r_h and kick interval make kicks give bounced ones 1.5 % of the energy of the shear",
+           "auto: carried where aggregates last (r_h of 1 or more), where grains stay on a moonlet, and where many "
+           "spheres rest on each other (r_h of 0.8 or more, in a ring of optical depth below 1 of 0.8 over its fourth "
+           "root)",
        .choices = {"auto", "carried", "bounced"},
        .only_with = {"solver", {"direct", "tree", "fft", "mesh", "auto"}},
        .unhashed = "\"bounced\""},

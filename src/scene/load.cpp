@@ -120,7 +120,7 @@ void read_resting_contacts(Scene& scene, config::Settings& settings, Purpose pur
   if (!scene.gravity || !settings.has(key) || settings.text(key) != "auto")
     return;
   const bool known = purpose == Purpose::start && !scene.start_from && !scene.particles.start;
-  scene.gravity->resting_contacts = known && choose_resting_contacts(scale_of(scene), scene).carried;
+  scene.gravity->resting_contacts = known && choose_resting_contacts(scale_of(scene), scene.planet).carried;
   if (known || purpose == Purpose::resume)
     settings.resolve(key, std::string(scene.gravity->resting_contacts ? "carried" : "bounced"));
 }
@@ -250,7 +250,7 @@ bool leaves_resting_open(const Scene& scene) {
 Scene decided_by(const Scene& scene, const PatchScale& start) {
   if (!leaves_resting_open(scene))
     return scene;
-  const RestingChoice choice = choose_resting_contacts(start, scene);
+  const RestingChoice choice = choose_resting_contacts(start, scene.planet);
   const char* const word = choice.carried ? "carried" : "bounced";
   Scene decided = parse_scene(scene.resolved, "the resolved scene", {fmt::format("gravity.resting_contacts={}", word)});
   decided.notices = scene.notices;

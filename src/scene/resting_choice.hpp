@@ -1,19 +1,18 @@
 // Chooses whether contacts at rest carry the kicks or bounce, where a scene leaves it open (gravity.resting_contacts =
-// "auto"). The choice depends on the bodies of the patch and on the kick interval only, so a fresh start, a snapshot
-// and a table of one patch give one choice. docs/dev/contact-solver.md has the measurements behind it.
+// "auto"). The choice depends on the bodies of the patch and the planet only, so a fresh start, a snapshot and a table
+// of one patch give one choice. docs/dev/contact-solver.md has the measurements behind it.
 #pragma once
 
 #include <keeler/scene/patch_scale.hpp>
 #include <keeler/scene/planet.hpp>
-#include <keeler/scene/scene.hpp>
 
 #include <string>
 
 namespace keeler::scene {
 
-/// Returns the energy that kicks give to bouncing contacts over the work of the shear, by a fit. `hill_parameter` is
-/// r_h; `kick_interval` is in orbits.
-double energy_of_kicks(double optical_depth, double hill_parameter, double kick_interval);
+/// Returns the r_h above which so many spheres of a ring rest on each other that it saves time to let them carry the
+/// kicks. Source: runs of equal spheres at optical depths 0.3 to 3. Precondition: optical_depth > 0.
+double hill_parameter_of_rest(double optical_depth);
 
 /// True if grains stay on a body: it is much larger than they are, and the mutual Hill radius is at least the radius
 /// sum.
@@ -25,7 +24,7 @@ struct RestingChoice {
   std::string reason;
 };
 
-/// Returns the choice for a patch, with the planet and the kick interval of the scene.
-RestingChoice choose_resting_contacts(const PatchScale& patch, const Scene& scene);
+/// Returns the choice for a patch at this planet.
+RestingChoice choose_resting_contacts(const PatchScale& patch, const PlanetSettings& planet);
 
 } // namespace keeler::scene

@@ -110,7 +110,7 @@ rests() {
 }
 rests bounced --set particles.density=204
 rests carried --set particles.density=597
-rests bounced --set particles.density=597 --set gravity.kick_every=1 --set time.step=2e-4
+rests carried --set particles.density=597 --set gravity.kick_every=1 --set time.step=2e-4 # whatever the kick interval
 
 printf '[planet]\norbital_frequency = 1.95e-4\n[start]\nfrom = "1.hdf"\n[time]\nstep = 1e-3\nend = 0.002\n' >"$work/share.toml"
 for share in 1.0 0.5; do
