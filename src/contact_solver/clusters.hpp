@@ -24,7 +24,7 @@ public:
   std::span<const std::uint32_t> joints(std::size_t cluster) const { return part(joints_, first_joint_, cluster); }
   /// Returns the bodies of a cluster, by their numbers in the network.
   std::span<const std::uint32_t> bodies(std::size_t cluster) const { return part(bodies_, first_body_, cluster); }
-  /// Returns the place of a body among those of its cluster. Precondition: it has a joint.
+  /// Returns the place of a body in bodies() of its cluster. Precondition: it has a joint.
   std::uint32_t place(std::uint32_t body) const { return place_[body]; }
 
 private:
