@@ -1,6 +1,6 @@
-// Runs every file of the corpus, and inputs made of it by simple changes from a fixed seed, through its target. What
-// was found once stays mended; no fuzzer is needed.
-//   replay CORPUS [EXAMPLES]
+// Runs every file of a target's corpus, and inputs made of it by simple changes from a fixed seed, through the target.
+// What was found once stays mended; no fuzzer is needed.
+//   replay TARGET CORPUS EXAMPLES
 // CORPUS has a folder for a target; the scenes of EXAMPLES are inputs of the target `scene` too.
 #include "targets.hpp"
 
@@ -71,20 +71,22 @@ void replay(const Target& target, const std::vector<fs::path>& files, const fs::
 } // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    std::fputs("usage: replay CORPUS [EXAMPLES]\n", stderr);
+  const Target* const target = argc == 4 ? keeler::fuzz::find_target(argv[1]) : nullptr;
+  if (!target) {
+    std::fputs("usage: replay TARGET CORPUS EXAMPLES, with a target of targets.hpp\n", stderr);
+    return 2;
+  }
+  std::vector<fs::path> files = files_below(fs::path(argv[2]) / target->name, "");
+  if (target->name == "scene")
+    for (const fs::path& file : files_below(argv[3], ".toml"))
+      files.push_back(file);
+  if (files.empty()) {
+    std::fputs("replay: the corpus has no input of this target\n", stderr);
     return 2;
   }
   keeler::set_threads(1);
   const fs::path folder = keeler::fuzz::make_folder();
-  for (const Target& target : keeler::fuzz::targets) {
-    std::vector<fs::path> files = files_below(fs::path(argv[1]) / target.name, "");
-    if (target.name == "scene" && argc > 2)
-      for (const fs::path& file : files_below(argv[2], ".toml"))
-        files.push_back(file);
-    if (!files.empty())
-      replay(target, files, folder);
-  }
+  replay(*target, files, folder);
   fs::remove_all(folder);
   return 0;
 }
