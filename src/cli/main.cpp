@@ -3,6 +3,7 @@
 #include "messages.hpp"
 #include "signals.hpp"
 #include "usage.hpp"
+#include "waiting_threads.hpp"
 
 #include <keeler/comm/communicator.hpp>
 #include <keeler/comm/same_request.hpp>
@@ -16,7 +17,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <new>
 #include <system_error>
@@ -143,16 +143,6 @@ int run(int argc, char** argv) {
     return end_with(print_help(program));
   ranks.together([] { set_threads(threads()); }); // refuses an invalid OMP_NUM_THREADS
   return end_with(action());
-}
-
-// Sets OpenMP's wait policy and restarts the program, since OpenMP reads the policy when it is loaded, before main.
-// Threads that spin while waiting make a run ten times slower on a busy machine. If exec() fails the program continues.
-void let_threads_sleep(char** argv) {
-  if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT"))
-    return;
-  setenv("OMP_WAIT_POLICY", "passive", 1);
-  setenv("GOMP_SPINCOUNT", "6000", 1); // some 10 µs: steps have many short loops
-  execv("/proc/self/exe", argv);
 }
 
 // Initializes HDF5 without its exit handler: after a damaged file HDF5 cannot close itself and prints long messages at
