@@ -7,6 +7,9 @@
 # keeler_archive_in_programs(TARGET NAME): programs link the archive beside the shared library NAME that TARGET names.
 function(keeler_archive_in_programs target name)
   get_target_property(libraries ${target} INTERFACE_LINK_LIBRARIES)
+  if(NOT libraries)
+    return()
+  endif()
   set(chosen "")
   foreach(library IN LISTS libraries)
     string(REGEX REPLACE "\\.so$" ".a" archive "${library}")
@@ -25,5 +28,7 @@ keeler_archive_in_programs(OpenMP::OpenMP_CXX libgomp)
 # keeler_program(TARGET): an executable that links these archives, and no shared library that it does not need.
 function(keeler_program target)
   set_property(TARGET ${target} PROPERTY KEELER_PROGRAM ON)
-  target_link_options(${target} PRIVATE LINKER:--as-needed)
+  if(NOT APPLE)
+    target_link_options(${target} PRIVATE LINKER:--as-needed)
+  endif()
 endfunction()

@@ -6,8 +6,6 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/parallel.hpp>
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 namespace keeler::contact_solver {
@@ -183,7 +181,7 @@ void RestingContacts::Work::solve(const RestingStep& step) {
   std::fill(velocity_changes.begin(), velocity_changes.end(), Vec3::Zero());
   const Clusters clusters(joints, members.size());
   parallel_for(
-      clusters.size(), [&](std::size_t k) { solve(clusters, k, held, step); }, 16);
+      clusters.size(), [&](std::size_t k) { solve(clusters, k, held, step); }, 1);
 }
 
 // Solves one cluster: a prediction to first order in the impulses, corrected with exact epicycles.
@@ -222,10 +220,9 @@ void RestingContacts::Work::solve(const Clusters& clusters, std::size_t cluster,
     if (done)
       break;
     if (!network.solve(required, tolerances, impulses))
-      throw InvariantError(fmt::format(
-          "no impulses balance the kick of {} contacts at rest (the particles are jammed in the box); make the box "
-          "larger, or set gravity.resting_contacts to \"bounced\"",
-          held.size()));
+      throw InvariantError(
+          "no impulses balance the kick of contacts at rest (the particles are jammed in the box); make "
+          "the box larger, or set gravity.resting_contacts to \"bounced\"");
     apply_impulses();
   }
   for (std::size_t c = 0; c < held.size(); ++c)

@@ -141,8 +141,7 @@ std::vector<Key> gravity_keys() {
        .meaning =
            "contacts that a kick does not resolve: carried, by impulses that act with it, or bounced as all others; "
            "auto: carried where aggregates last (r_h of 1 or more), where grains stay on a moonlet, and where many "
-           "spheres rest on each other (r_h of 0.8 or more, in a ring of optical depth below 1 of 0.8 over its fourth "
-           "root)",
+           "spheres rest on each other (from r_h 0.79 on; from 0.79/τ^(1/4) on where the optical depth τ is below 1)",
        .choices = {"auto", "carried", "bounced"},
        .only_with = {"solver", {"direct", "tree", "fft", "mesh", "auto"}},
        .unhashed = "\"bounced\""},

@@ -13,6 +13,7 @@ namespace keeler::scene {
 namespace {
 
 constexpr double aggregates_last = 1.0;     // r_h
+constexpr double rest_begins = 0.79;        // r_h, in a dense ring
 constexpr double much_larger = 3.0;         // radius of a body over that of its grains
 constexpr double min_mass_fraction = 0.001; // of the patch, in a body that must hold grains to matter
 
@@ -31,11 +32,11 @@ bool holds_grains(const PatchScale::Sphere& body, const PatchScale::Sphere& grai
          pair_hill_parameter(body, grain, distance_from_saturn(planet)) >= aggregates_last;
 }
 
-// From the table of tests/unit/scene/resting_choice.cpp: wakes hold more spheres at rest the denser they are, and in a
-// thinner ring a smaller part of all.
+// From the table of tests/unit/scene/resting_choice.cpp. In a thinner ring wakes are fewer, and hold fewer spheres at
+// rest.
 double hill_parameter_of_rest(double optical_depth) {
-  assert(optical_depth > 0.0);
-  return 0.8 * std::max(1.0, std::pow(optical_depth, -0.25));
+  assert(optical_depth >= 0.0);
+  return std::clamp(rest_begins * std::pow(optical_depth, -0.25), rest_begins, aggregates_last);
 }
 
 RestingChoice choose_resting_contacts(const PatchScale& patch, const PlanetSettings& planet) {
@@ -44,12 +45,9 @@ RestingChoice choose_resting_contacts(const PatchScale& patch, const PlanetSetti
     return {true, fmt::format("aggregates last at r_h {}", format_number(r_h, 3))};
   if (patch.largest.mass >= min_mass_fraction * patch.mass && holds_grains(patch.largest, patch.grain, planet))
     return {true, fmt::format("grains stay on a body of {} m", format_number(patch.largest.radius, 3))};
-  if (!(patch.optical_depth > 0.0))
-    return {false, "no spheres rest on each other"};
   const double limit = hill_parameter_of_rest(patch.optical_depth);
-  return {r_h >= limit,
-          fmt::format("{} spheres rest on each other: r_h {} is {} {}", r_h >= limit ? "many" : "few",
-                      format_number(r_h, 3), r_h >= limit ? "at least" : "below", format_number(limit, 3))};
+  return {r_h >= limit, fmt::format("{} spheres rest on each other at r_h {}: at this optical depth many do from {} on",
+                                    r_h >= limit ? "many" : "few", format_number(r_h, 3), format_number(limit, 3))};
 }
 
 } // namespace keeler::scene

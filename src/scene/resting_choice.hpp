@@ -10,8 +10,8 @@
 
 namespace keeler::scene {
 
-/// Returns the r_h above which so many spheres of a ring rest on each other that it saves time to let them carry the
-/// kicks. Source: runs of equal spheres at optical depths 0.3 to 3. Precondition: optical_depth > 0.
+/// Returns the r_h from which on so many spheres of a ring rest on each other that it saves time to let them carry the
+/// kicks. Source: runs of equal spheres at optical depths 0.3 to 3. Precondition: optical_depth >= 0.
 double hill_parameter_of_rest(double optical_depth);
 
 /// True if grains stay on a body: it is much larger than they are, and the mutual Hill radius is at least the radius

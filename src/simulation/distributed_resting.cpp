@@ -1,4 +1,4 @@
-// Contacts at rest in distributed runs: their network is solved on every rank, with copies of all particles that have
+// Contacts at rest in distributed runs: their clusters are solved on every rank, with copies of all particles that have
 // such a contact (the members), and each rank keeps what happens to its own ones. docs/dev/ranks.md.
 #include <keeler/simulation/simulation.hpp>
 

@@ -125,6 +125,10 @@ runs 0 info "$(newest_checkpoint "$work/kept")" --json
   fail "the checkpoint of step '$step' is of orbit $(text time_orbits "$work/out")"
 runs 0 resume "$work/kept" --until "$(awk -v s="$step" 'BEGIN { print 0.01 * (s + 1) }')"
 
+# Waiting threads sleep where the environment says nothing of it.
+env -u OMP_WAIT_POLICY -u GOMP_SPINCOUNT OMP_DISPLAY_ENV=verbose "$keeler" --version >"$work/out" 2>"$work/err"
+grep -q "OMP_WAIT_POLICY *= *'PASSIVE'" "$work/err" || fail "threads spin: $(grep WAIT "$work/err")"
+
 # Little memory: one line wherever it runs out, including the start of HDF5 and OpenMP's threads.
 limited() { # KIB ARGUMENT...: as runs, whatever the code is
   (
@@ -134,7 +138,7 @@ limited() { # KIB ARGUMENT...: as runs, whatever the code is
   )
 }
 export OMP_WAIT_POLICY=passive
-least=20000
+least=10000
 until { limited $least --version; } 2>/dev/null; do least=$((least + 200)); done
 for ((more = 0; more <= 9600; more += 300)); do
   code=0

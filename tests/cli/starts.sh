@@ -71,7 +71,7 @@ refuses "an aggregate wider than the box" "across (more than one side of the box
 refuses "an aggregate in a moonlet" "particles.aggregate[1] and moonlet[1] overlap" generate "$work/scene.toml" \
   --set "$(aggregate 200 0.5)" --set 'moonlet=[{ radius = 11.0, density = 900.0 }]' -o "$work/none.hdf"
 
-# The treatment of contacts at rest follows from the particles and the kick interval, whatever their source.
+# The treatment of contacts at rest follows from the particles, whatever their source.
 cat >"$work/layer.toml" <<END
 [planet]
 preset = "saturn-a-ring"

@@ -145,7 +145,7 @@ class AsTheProgram(InAFolder):
         with subprocess.Popen([sys.executable, "-c", code, scene, run], stderr=subprocess.DEVNULL) as process:
             series = run / "series.csv"
             for _ in range(2400):  # until it has a row after its start's
-                if series.exists() and series.read_text().count("\n") > 3:
+                if process.poll() is not None or (series.exists() and series.read_text().count("\n") > 2):
                     break
                 time.sleep(0.05)
             process.send_signal(signal.SIGINT)
