@@ -1,5 +1,5 @@
 # HDF5 and the runtime of OpenMP are linked into programs, where their archives exist. Debian's shared HDF5 loads forty
-# more libraries for files on servers, which nothing here reads: they are half of a program's start (docs/dev/project.md).
+# more libraries for files on servers, which nothing here reads: they took a third of a start (docs/dev/project.md).
 # A runtime of OpenMP inside reads its settings after the program has set them (src/cli/waiting_threads.cpp); a shared
 # one reads them first, and the program has to start itself again.
 # Libraries, and the module for Python, which shares HDF5 with h5py's users, link the shared ones.
