@@ -46,8 +46,9 @@ RestingChoice choose_resting_contacts(const PatchScale& patch, const PlanetSetti
   if (patch.largest.mass >= min_mass_fraction * patch.mass && holds_grains(patch.largest, patch.grain, planet))
     return {true, fmt::format("grains stay on a body of {} m", format_number(patch.largest.radius, 3))};
   const double limit = hill_parameter_of_rest(patch.optical_depth);
-  return {r_h >= limit, fmt::format("{} spheres rest on each other at r_h {}: at this optical depth many do from {} on",
-                                    r_h >= limit ? "many" : "few", format_number(r_h, 3), format_number(limit, 3))};
+  return {r_h >= limit,
+          fmt::format("r_h {} is {} {}, from which on carrying saves time at this optical depth", format_number(r_h, 4),
+                      r_h >= limit ? "at least" : "below", format_number(limit, 4))};
 }
 
 } // namespace keeler::scene

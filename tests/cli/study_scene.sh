@@ -69,7 +69,7 @@ same_tables "stopped" "$work/stopped"
 # Another study, other settings, other content.
 refuses "another study" 'another study ("kicks")' study step "$work/scene.toml" --quick -o "$work/whole"
 refuses "other seeds" "another seeds (2)" "${kicks[@]}" --seeds 3 -o "$work/whole"
-refuses "another scene" "was made with particles.density = 600" "${kicks[@]}" --set particles.density=500.0 -o "$work/whole"
+refuses "another scene" "was made with particles.density = 600" "${kicks[@]}" --set particles.density=610.0 -o "$work/whole"
 mkdir "$work/full"
 touch "$work/full/mine"
 refuses "other content" "is not the folder of a study" "${kicks[@]}" -o "$work/full"
