@@ -16,9 +16,9 @@ density = 600.0
 sizes = { law = "equal", radius = 1.0 }
 [time]
 step = 2e-3
-end = 10.0
+end = 20.0
 [output]
-snapshot_every = 2.5
+snapshot_every = 5.0
 checkpoint_every = 0.5
 END
 
