@@ -181,16 +181,16 @@ void RestingContacts::Work::solve(const RestingStep& step) {
   std::fill(velocity_changes.begin(), velocity_changes.end(), Vec3::Zero());
   const Clusters clusters(joints, members.size());
   parallel_for(
-      clusters.size(), [&](std::size_t k) { solve(clusters, k, held, step); }, 1);
+      clusters.size(), [&](std::size_t k) { solve_cluster(clusters, k, held, step); }, 1);
 }
 
 // Solves one cluster: a prediction to first order in the impulses, corrected with exact epicycles.
-void RestingContacts::Work::solve(const Clusters& clusters, std::size_t cluster, std::span<PairAtRest* const> all_held,
-                                  const RestingStep& step) {
+void RestingContacts::Work::solve_cluster(const Clusters& clusters, std::size_t cluster,
+                                          std::span<PairAtRest* const> all_held, const RestingStep& step) {
   const Rotation now(step.frequencies, -step.to_epoch), then(step.frequencies, step.interval - step.to_epoch);
   std::vector<Joint> joints;
   std::vector<PairAtRest*> held;
-  std::vector<double> impulses, required, tolerances, masses_inverted;
+  std::vector<double> impulses, required, tolerances, own_inverse_masses;
   for (const std::uint32_t c : clusters.joints(cluster)) {
     PairAtRest& p = *all_held[c];
     joints.push_back({clusters.place(p.low), clusters.place(p.high), p.normal});
@@ -199,10 +199,10 @@ void RestingContacts::Work::solve(const Clusters& clusters, std::size_t cluster,
     tolerances.push_back(gap_tolerance * p.min_gap / step.interval);
   }
   for (const std::uint32_t body : clusters.bodies(cluster))
-    masses_inverted.push_back(inverse_masses[body]);
+    own_inverse_masses.push_back(inverse_masses[body]);
   required.resize(held.size());
-  BoundedImpulses network(joints, masses_inverted);
-  std::vector<Vec3> changes(masses_inverted.size());
+  BoundedImpulses network(joints, own_inverse_masses);
+  std::vector<Vec3> changes(own_inverse_masses.size());
   const auto apply_impulses = [&] {
     network.apply(impulses, changes);
     for (std::size_t b = 0; b < changes.size(); ++b)

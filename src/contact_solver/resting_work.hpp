@@ -56,7 +56,8 @@ struct RestingContacts::Work {
   void apply_friction(const RestingStep& step, const collision::Friction& friction, CollisionTally& tally);
   void classify_pairs(const RestingStep& step);
   void solve(const RestingStep& step);
-  void solve(const Clusters& clusters, std::size_t cluster, std::span<PairAtRest* const> held, const RestingStep& step);
+  void solve_cluster(const Clusters& clusters, std::size_t cluster, std::span<PairAtRest* const> held,
+                     const RestingStep& step);
   void distribute(RestingState& state, const RestingStep& step, const std::vector<Vec3>& kicks, bool after,
                   CollisionTally& tally);
 

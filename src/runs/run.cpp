@@ -26,7 +26,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 namespace keeler::runs {
 namespace {
@@ -76,6 +78,17 @@ struct Start {
                   last_checkpoint, resume_command(options)));
 }
 
+// Throws IoError if the folder of the run was moved or removed, which explains a write that failed better than the
+// write does. A removal takes the files of a folder before the folder itself, so the folder is looked for during half a
+// second.
+void look_for_folder(const Recorder& recorder) {
+  constexpr int looks = 10;
+  for (int k = 0; k < looks; ++k) {
+    recorder.require_folder();
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
+
 RunResult evolve(const Scene& scene, const RunOptions& options, RunRequests& requests, const RunFolder& folder,
                  Simulation& simulation, Recorder& recorder, const Start& start) {
   const std::int64_t first_step = simulation.state().control.steps;
@@ -90,7 +103,7 @@ RunResult evolve(const Scene& scene, const RunOptions& options, RunRequests& req
     fail_given_up(options, runner.last_checkpoint(), recorder);
   } catch (const IoError&) {
     if (options.ranks.is_root())
-      recorder.require_folder(); // a folder that was moved during a write explains the failure better
+      look_for_folder(recorder);
     throw;
   } catch (const Error& error) {
     // particles are distributed: all ranks must know of the error

@@ -108,11 +108,7 @@ for change in "mv run there" "mv run there; mkdir run" "until rm -r run; do :; d
   (cd "$work" && eval "$change" 2>/dev/null)
   ends 4 "$change"
   sed -i "/series.csv' was removed or replaced/d" "$work/err" # rm takes it first, and the run may see that
-  if [[ $change == until* ]] && grep -q "cannot write '.*': No such file or directory" "$work/err"; then
-    one_line "$change" "cannot write '$work/run/" # rm took a file that was just written, and not yet the folder
-  else
-    one_line "$change" "was moved, replaced or removed while the run wrote to it"
-  fi
+  one_line "$change" "was moved, replaced or removed while the run wrote to it"
   [ -e "$work/run" ] && [ -n "$(ls -A "$work/run")" ] && fail "$change: split: $(ls "$work/run")"
   if [ -e "$work/there" ]; then
     runs 0 resume "$work/there" --until "$(text time_orbits <("$keeler" info "$(newest_checkpoint "$work/there")" --json) | awk '{print $1 + 0.1}')"
