@@ -23,10 +23,6 @@ bool particles_known(Checked c) {
   return c.derived.particles_known;
 }
 
-bool has_kicks(Checked c) {
-  return c.scene.gravity && !c.scene.time.automatic;
-}
-
 // True if particles attract each other in pairs, so that contacts at rest can occur.
 bool may_rest(Checked c) {
   return c.scene.gravity && c.scene.gravity->by_pairs();
@@ -132,9 +128,11 @@ std::vector<QuantityRow<CheckedScene>> course_rows() {
                     : Value(c.scene.time.step);
        }},
       {{"kick_interval", unit::orbits, "from kick to kick", "with a fixed step and self-gravity, otherwise null"},
-       [](Checked c) {
-         return has_kicks(c) ? Value(c.scene.time.step * static_cast<double>(c.scene.gravity->kick_every))
-                             : Value(Unknown{});
+       [](Checked c) -> Value {
+         if (!c.scene.gravity)
+           return Unknown{};
+         return c.scene.time.automatic ? Value(Unknown{"it is automatic, as the step"})
+                                       : Value(c.scene.time.step * static_cast<double>(c.scene.gravity->kick_every));
        }},
       {word("gravity", "gravity", "solver and settings of self-gravity, or \"none\""),
        [](Checked c) {

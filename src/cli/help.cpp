@@ -8,6 +8,7 @@
 #include <keeler/runs/measurement.hpp>
 #include <keeler/runs/series_columns.hpp>
 #include <keeler/runs/summary.hpp>
+#include <keeler/scene/keys.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -78,6 +79,14 @@ bool mentions(const quantities::Quantity& quantity, const std::string& words) {
          (quantity.full_name().find(words) != std::string::npos || quantity.label.find(words) != std::string::npos);
 }
 
+// Prints the keys of a scene that are called so. Returns false if there are none.
+bool explain_keys(const std::string& name) {
+  const std::string lines = scene::describe_keys_called(name);
+  if (!lines.empty())
+    print("scene.toml: keys of a scene\n{}", lines);
+  return !lines.empty();
+}
+
 bool is_command(const CLI::App& program, const std::string& word) {
   const std::vector<const CLI::App*> commands = listed_commands(program);
   return std::any_of(commands.begin(), commands.end(),
@@ -100,10 +109,14 @@ const CLI::App& find_command(const CLI::App& program, const std::vector<std::str
         for (const NumberTable& table : number_tables())
           for (const quantities::Quantity& quantity : table.quantities)
             names.insert(names.end(), {quantity.name, quantity.full_name()});
+      if (command == &program)
+        for (const Key& key : scene::scene_keys())
+          names.push_back(key.path);
       const std::string near = closest(word, names);
       throw UsageError(fmt::format("'{}' has no command '{}'; {}", full_name(*command), word,
                                    near.empty()
-                                       ? "\"keeler help\" lists the commands, \"keeler help numbers\" the numbers"
+                                       ? "\"keeler help\" lists the commands, \"keeler help numbers\" the numbers, "
+                                         "\"keeler check --defaults\" the keys of a scene"
                                        : fmt::format("did you mean '{}'?", near)));
     }
     command = found;
@@ -140,21 +153,24 @@ void leave_out(CLI::App& program, Action& action, const char* name) {
 
 void add_help(CLI::App& program, Action& action) {
   const auto words = std::make_shared<std::vector<std::string>>();
-  CLI::App& command = *program.add_subcommand("help", "list the commands, or explain a command or a number");
+  CLI::App& command = *program.add_subcommand("help", "list the commands, or explain a command, a number or a key");
   command
       .add_option("COMMAND", *words,
                   "a command, with a subcommand: bench drift; \"numbers\", or a number by its name, its label or a "
-                  "part of them")
+                  "part of them; a key of a scene, its last part, or a table")
       ->type_name("");
   examples_of(command, {"keeler help run", "keeler help bench drift", "keeler help numbers", "keeler help toomre_q",
-                        "keeler help viscosity"});
+                        "keeler help viscosity", "keeler help gravity.solver"});
   command.callback([words, &program, &action] {
     action = [words, &program] {
       if (words->size() == 1 && words->front() == "numbers")
         return list_numbers();
       const std::string name = fmt::format("{}", fmt::join(*words, " "));
       using quantities::Quantity;
-      if (explain_numbers([&](const Quantity& one) { return one.is_called(name) || is_labelled(one, name); }))
+      const bool may_be_key = words->size() == 1 && !is_command(program, name);
+      const bool is_number =
+          explain_numbers([&](const Quantity& one) { return one.is_called(name) || is_labelled(one, name); });
+      if ((may_be_key && explain_keys(name)) || is_number)
         return ExitCode::done;
       if (!words->empty() && !is_command(program, words->front()) &&
           explain_numbers([&](const Quantity& one) { return mentions(one, name); }))

@@ -3,6 +3,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/exact_sum.hpp>
+#include <keeler/core/interrupt.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/version.hpp>
 
@@ -338,9 +339,15 @@ void Communicator::together(const std::function<void()>& work) const {
   if (!distributed())
     return work();
   std::optional<Error> error;
+  bool is_interrupted = false;
   std::exception_ptr thrown;
   try {
-    work();
+    try {
+      work();
+    } catch (const Interrupted&) {
+      is_interrupted = true;
+      throw;
+    }
   } catch (...) {
     error = error_at_hand();
     thrown = std::current_exception();
@@ -350,9 +357,11 @@ void Communicator::together(const std::function<void()>& work) const {
     return;
   error_is_common = true;
   another_reports = reporter != rank_;
-  Parcels parcels(size_); // the lowest failed rank sends its error to all: three digits of the code, then the text
+  // the lowest failed rank sends its error to all: three digits of the code, i or e, then the text
+  Parcels parcels(size_);
   if (reporter == rank_) {
-    const std::string text = fmt::format("{:3d}{}", static_cast<int>(error->code()), error->what());
+    const std::string text =
+        fmt::format("{:3d}{}{}", static_cast<int>(error->code()), is_interrupted ? 'i' : 'e', error->what());
     const auto bytes = std::as_bytes(std::span(text));
     for (std::vector<std::byte>& parcel : parcels)
       parcel.assign(bytes.begin(), bytes.end());
@@ -360,9 +369,11 @@ void Communicator::together(const std::function<void()>& work) const {
   const std::vector<std::byte> received = exchange(std::move(parcels))[reporter];
   if (reporter == rank_)
     std::rethrow_exception(thrown);
-  assert(received.size() >= 3);
+  assert(received.size() >= 4);
   const std::string text(reinterpret_cast<const char*>(received.data()), received.size());
-  throw Error(static_cast<ExitCode>(std::stoi(text.substr(0, 3))), text.substr(3));
+  if (text[3] == 'i')
+    throw Interrupted(text.substr(4));
+  throw Error(static_cast<ExitCode>(std::stoi(text.substr(0, 3))), text.substr(4));
 }
 
 void Communicator::on_root(const std::function<void()>& work) const {

@@ -27,21 +27,19 @@ std::string default_words(const Key& key, const std::string& code) {
   return key.fallback.empty() ? "none" : code + key.fallback + code;
 }
 
-std::vector<Row> make_rows(bool markdown) {
+std::vector<Row> rows_of_titles(bool markdown) {
   std::vector<Row> rows = {{"key", "default", "unit", "meaning; what it must be"}};
   if (markdown)
     rows.push_back({"---", "---", "---", "---"});
-  for (const Key& key : scene_keys()) {
-    const std::string code = markdown ? "`" : "";
-    rows.push_back({code + key.path + code, default_words(key, code), key.unit, meaning_words(key)});
-  }
   return rows;
 }
 
-} // namespace
+Row row_of(const Key& key, bool markdown) {
+  const std::string code = markdown ? "`" : "";
+  return {code + key.path + code, default_words(key, code), key.unit, meaning_words(key)};
+}
 
-std::string describe_keys(bool markdown) {
-  const std::vector<Row> rows = make_rows(markdown);
+std::string table_of(const std::vector<Row>& rows, bool markdown) {
   std::array<std::size_t, 3> widths{};
   for (const Row& row : rows)
     for (std::size_t k = 0; k < widths.size(); ++k)
@@ -53,6 +51,29 @@ std::string describe_keys(bool markdown) {
                     : fmt::format("{:{}}  {:{}}  {:{}}  {}\n", row[0], widths[0], row[1], widths[1], row[2], widths[2],
                                   row[3]);
   return out;
+}
+
+// Returns whether the key has this path or this last part of it, or is in the table of this name.
+bool is_called(const Key& key, const std::string& name) {
+  return key.path == name || key.path.ends_with('.' + name) || key.path.starts_with(name + '.');
+}
+
+} // namespace
+
+std::string describe_keys(bool markdown) {
+  std::vector<Row> rows = rows_of_titles(markdown);
+  for (const Key& key : scene_keys())
+    rows.push_back(row_of(key, markdown));
+  return table_of(rows, markdown);
+}
+
+std::string describe_keys_called(const std::string& name) {
+  std::vector<Row> rows = rows_of_titles(false);
+  const std::size_t titles = rows.size();
+  for (const Key& key : scene_keys())
+    if (is_called(key, name))
+      rows.push_back(row_of(key, false));
+  return rows.size() > titles ? table_of(rows, false) : "";
 }
 
 } // namespace keeler::scene

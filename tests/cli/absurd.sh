@@ -14,7 +14,7 @@ refused_by_all() {
   refuses "$name, check" "$words" check "$@"
   refuses "$name, run" "$words" run "$@" -o "$work/none"
   [ -e "$work/none" ] && fail "$name: a folder was made"
-  [ "$(wc -c <"$work/said")" -lt 2100 ] || fail "$name: $(wc -c <"$work/said") bytes of message"
+  [ "$(stat -c %s "$work/err")" -lt 2100 ] || fail "$name: $(stat -c %s "$work/err") bytes of message"
 }
 
 for absurd in planet.orbital_frequency=1e-12 planet.orbital_frequency=1e200 planet.vertical_ratio=1e15; do
@@ -41,7 +41,7 @@ refused_by_all "a long key" "unknown" "$work/key.toml"
 sed 's/^solver = .*/solver = "tr\xff\x1b[31mee"/' "$work/scene.toml" >"$work/bytes.toml"
 refused_by_all "bytes that are no text" "TOML" "$work/bytes.toml"
 refused_by_all "the same by --set" "gravity.solver" "$work/scene.toml" --set "gravity.solver=$(printf 'tr\xff\x1b[31mee')"
-LC_ALL=C grep -qP '[\x80-\xff\x1b]' "$work/said" && fail "raw bytes in: $(cat -v "$work/said")"
+LC_ALL=C grep -qP '[\x80-\xff\x1b]' "$work/err" && fail "raw bytes in: $(cat -v "$work/err")"
 
 # Nesting depth, length and number of entries of a file.
 python3 - "$work" <<'END'

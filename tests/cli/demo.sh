@@ -40,6 +40,12 @@ accepts "a label" help Toomre Q
 prints "a label" "  toomre_q "
 accepts "a part of a name" help viscosity
 prints "a part of a name" "  collisional_viscosity_m2_s"
+accepts "a key" help gravity.resting_contacts
+prints "a key" "keys of a scene"
+prints "a key" "gravity.resting_contacts "
+accepts "a table" help collisions.friction
+prints "a table" "collisions.friction.coefficient "
+refuses "nearly a key" "has no command 'gravity.resting_contact'; did you mean 'gravity.resting_contacts'?" help gravity.resting_contact
 refuses "no number" "has no command 'viscos_ty'" help viscos_ty
 refuses "no command" "has no command 'sweeep'; did you mean 'sweep'?" sweeep
 report

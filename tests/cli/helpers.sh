@@ -34,9 +34,14 @@ accepts() {
   [ -s "$work/err" ] && fail "$name: $(cat "$work/err")"
 }
 
+# content FILE: sets $content to the text of the file up to its first NUL, without a process of its own
+content() { IFS= LC_ALL=C read -r -d '' content <"$1" || true; }
+
 # prints NAME WORDS: the last command printed the words
 prints() {
-  grep -qF -- "$2" "$work/out" || fail "$1: no '$2' in: $(cat "$work/out")"
+  local content
+  content "$work/out"
+  [[ $content == *"$2"* ]] || fail "$1: no '$2' in: $content"
 }
 
 # no_controls NAME: the last command printed no control characters
@@ -47,10 +52,13 @@ no_controls() {
 
 # one_line NAME WORDS: the last command printed exactly one message, besides progress and notes, and it contains the words
 one_line() {
-  grep -vE '^[0-9.]+/[0-9.]+ orbits | % +[0-9:]+ left  |^ *[0-9]+ %  |^[0-9.]+ orbits .* contrast |^keeler: note: ' "$work/err" >"$work/said"
-  [ "$(wc -l <"$work/said")" -eq 1 ] || fail "$1: not one line: $(cat "$work/said")"
-  grep -q "^keeler: " "$work/said" || fail "$1: does not name the program: $(cat "$work/said")"
-  grep -qF -- "$2" "$work/said" || fail "$1: no '$2' in: $(cat "$work/said")"
+  local line said=() besides='^[0-9.]+/[0-9.]+ orbits | % +[0-9:]+ left  |^ *[0-9]+ %  |^[0-9.]+ orbits .* contrast |^keeler: note: '
+  while IFS= read -r line || [ -n "$line" ]; do
+    [[ $line =~ $besides ]] || said+=("$line")
+  done <"$work/err"
+  [ "${#said[@]}" -eq 1 ] || fail "$1: not one line: $(cat "$work/err")"
+  [[ ${said[0]-} == "keeler: "* ]] || fail "$1: does not name the program: $(cat "$work/err")"
+  [[ ${said[0]-} == *"$2"* ]] || fail "$1: no '$2' in: $(cat "$work/err")"
 }
 
 # refuses_with CODE NAME WORDS ARGUMENT...: the program ends with this code, nothing on stdout, and one message with the words

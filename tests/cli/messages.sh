@@ -5,32 +5,36 @@
 source "$(dirname "$0")/helpers.sh"
 libraries='json\.exception|type_error|parse_error|std::|filesystem error|H5[A-Z]|HDF5-DIAG|bad byte|doesn.t exist|unable to|toml::|toml\+\+|pybind|CLI::|basic_string|bad_alloc|length_error|vector|map::|stod|stoi|FFTW|[Cc]airo|what\(\)|terminate|fmt::|\[\]'
 
+controls=$'[\x01-\x08\x0b-\x1f\x7f]'
+
 where=$work # the working folder
 gone=false  # it is removed before the program starts
 code=0      # speaks sets it to the exit code
 
 # speaks NAME ARGUMENT...: the program ends by itself, with success or not, and prints only Keeler's messages
 speaks() {
-  local name=$1
+  local LC_ALL=C name=$1 content
   shift
   code=0
-  mkdir -p "$where"
+  [ -d "$where" ] || mkdir -p "$where"
   (cd "$where" && { ! $gone || rmdir "$where"; } && exec timeout 20 "$keeler" "$@") >"$work/out" 2>"$work/err" </dev/null || code=$?
   [ "$code" -le 4 ] || fail "$name: exit $code: $(tail -n 3 "$work/err")"
-  grep -aqE "$libraries" "$work/err" && fail "$name: $(cat "$work/err")"
-  [ "$code" -eq 0 ] || [ "$(grep -acvE ' % +[0-9:]+ left |^ *[0-9]+ %  |^keeler: note: |^[0-9.]+/[0-9.]+ orbits ' "$work/err")" -eq 1 ] ||
-    fail "$name: not one line: $(cat "$work/err")"
-  [ "$(head -c 4 "$work/out" | tail -c 3)" != PNG ] || return 0 # a picture on standard output
-  LC_ALL=C grep -aq $'[\x01-\x08\x0b-\x1f\x7f]' "$work/out" "$work/err" && fail "$name: control characters: $(cat -v "$work/out" "$work/err")"
+  content "$work/err"
+  [[ $content =~ $libraries ]] && fail "$name: $content"
+  [ "$code" -eq 0 ] || one_line "$name" ""
+  [[ ! $content =~ $controls ]] || fail "$name: control characters: $(cat -v "$work/err")"
+  content "$work/out"
+  [[ $content == ?PNG* || ! $content =~ $controls ]] || fail "$name: control characters: $(cat -v "$work/out")" # but in a picture
 }
 
 # refused CODE NAME WORDS ARGUMENT...: as speaks, and the program ends with this code and prints the words
 refused() {
-  local expected=$1 name=$2 words=$3
+  local expected=$1 name=$2 words=$3 content
   shift 3
   speaks "$name" "$@"
   [ "$code" -eq "$expected" ] || fail "$name: exit $code instead of $expected: $(cat "$work/err")"
-  grep -aqF -- "$words" "$work/err" || fail "$name: no '$words' in: $(cat "$work/err")"
+  content "$work/err"
+  [[ $content == *"$words"* ]] || fail "$name: no '$words' in: $content"
 }
 
 cat >"$work/scene.toml" <<'END'

@@ -4,6 +4,7 @@
 #include "unit/files/disk.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/interrupt.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/runs/run.hpp>
@@ -106,6 +107,17 @@ std::string hash_after(Simulation& simulation, const Scene& its, int steps) {
 }
 
 } // namespace
+
+TEST_CASE("work that one rank interrupts is interrupted on all, which may go on") {
+  for (std::size_t rank = 0; rank < launched().size(); ++rank) {
+    const auto interrupt = [&] {
+      if (launched().rank() == rank)
+        throw Interrupted();
+    };
+    CHECK_THROWS_AS(launched().together(interrupt), Interrupted);
+    CHECK(launched().max(static_cast<double>(launched().rank())) == static_cast<double>(launched().size() - 1));
+  }
+}
 
 TEST_CASE("a snapshot is read in consecutive parts, and without a seal by the root") {
   for (const bool rough : {false, true}) {

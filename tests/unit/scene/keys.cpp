@@ -93,4 +93,18 @@ TEST_CASE("the text table has one line per key") {
     CHECK(table.find("\n" + key.path + " ") != std::string::npos);
 }
 
+TEST_CASE("keys are described by their path, their last part, or their table") {
+  const auto lines = [](const std::string& name) {
+    const std::string table = describe_keys_called(name);
+    return std::count(table.begin(), table.end(), '\n');
+  };
+  for (const Key& key : scene_keys())
+    CHECK(describe_keys_called(key.path).find("\n" + key.path + " ") != std::string::npos);
+  CHECK(lines("gravity.kick_every") == 2); // with the titles
+  CHECK(lines("kick_every") == 2);
+  CHECK(lines("particles.streamlines") == 4);
+  CHECK(lines("kick") == 0);
+  CHECK(lines("") == 0);
+}
+
 } // namespace keys_test
