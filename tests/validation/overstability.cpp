@@ -1,8 +1,8 @@
 // Viscous overstability: waves that are seeded, and grow or decay; without self-gravity, and with it and its wakes.
 #include "rows.hpp"
+#include "waves.hpp"
 
 #include <keeler/core/units.hpp>
-#include <keeler/diagnostics/radial_modes.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/diagnostics/wake_geometry.hpp>
 
@@ -13,34 +13,9 @@
 namespace keeler::validation {
 namespace {
 
-constexpr double settled = 3.0; // orbits; the layer relaxes within one
-
-struct Wave {
-  std::string command;
-  std::vector<Patch> patches; ///< since the layer has settled
-  diagnostics::Growth growth; ///< in Ω
-};
-
-// One wave in the box, as long as it.
-Wave seeded_wave(double amplitude, double length, double width, double depth, double orbits,
-                 std::vector<std::string> more) {
-  more.insert(more.begin(),
-              {fmt::format("box.size=[{},{}]", length, width), fmt::format("particles.optical_depth={}", depth),
-               fmt::format("particles.modes.outward=[[1,{},0]]", amplitude), fmt::format("time.end={}", orbits),
-               "time.step=2e-3", "output.snapshot_every=0.25", "output.series_every=0.1"});
-  const Ran ran = run_example("equilibrium", more);
-  Wave wave;
-  wave.command = fmt::format("{}; keeler analyze DIR --since {}", ran.command, settled);
-  for (const Patch& patch : ran.snapshots)
-    if (patch.time_orbits > settled - 1e-9)
-      wave.patches.push_back(patch);
-  wave.growth = *diagnostics::analyze_radial_modes(wave.patches, 1)[0].growth;
-  return wave;
-}
-
 // ν/Ω = 3.6 stands for the vertical self-gravity of a dense ring.
 Wave without_gravity(double length, double depth) {
-  return seeded_wave(0.05, length, std::round((depth > 1.0 ? 6000.0 : 12000.0) / length), depth, 24.0,
+  return seeded_wave({.length = length, .width = std::round(12000.0 / length), .depth = depth},
                      {"planet.vertical_ratio=3.6"});
 }
 
@@ -50,7 +25,7 @@ Wave with_gravity(double hill, double orbits, const std::vector<std::string>& mo
   std::vector<std::string> all = {fmt::format("particles.density={:.1f}", density), "gravity={solver=\"fft\"}",
                                   "collisions.restitution={ law = \"constant\", value = 0.1 }"};
   all.insert(all.end(), more.begin(), more.end());
-  return seeded_wave(0.1, 100.0, 60.0, 1.0, orbits, all);
+  return seeded_wave({.amplitude = 0.1, .length = 100.0, .width = 60.0, .depth = 1.0, .end = orbits}, all);
 }
 
 Row growth_row(const std::string& wave_of, const Wave& wave, double expected, double tolerance,
@@ -90,23 +65,6 @@ double reduction_by_thickness(const Patch& patch, double k) {
   return sum / (static_cast<double>(patch.size()) * static_cast<double>(patch.size()));
 }
 
-// The frequency of the outward wave, which goes as exp(i(kx - wt)), in Omega, and its error: kappa less the rate of its
-// phase against epicycles without forces.
-diagnostics::Growth frequency_of(const Wave& wave) {
-  std::vector<double> times, turns; // growth() fits a line through the logarithms: of exp(phase), through the phases
-  double phase = 0.0;
-  for (const Patch& patch : wave.patches) {
-    const double kappa = patch.frequencies.kappa, time = two_pi * patch.time_orbits;
-    const double next = std::arg(diagnostics::radial_modes(patch, 1)[0].outward(kappa) * std::polar(1.0, kappa * time));
-    phase += std::remainder(next - phase, two_pi);
-    times.push_back(time);
-    turns.push_back(std::exp(phase));
-  }
-  diagnostics::Growth result = *diagnostics::growth(times, turns);
-  result.rate = wave.patches.front().frequencies.kappa - result.rate;
-  return result;
-}
-
 // Of a ring with self-gravity at r_h 0.5. The slope of the pressure by surface density is that of the same ring without
 // the wave, at optical depths from 0.85 to 1.15 (examples/overstability/pressure.py). A wave is faster than the ring
 // heats and cools; so up to 5/3 of that slope, an adiabatic gas's, are allowed.
@@ -139,18 +97,6 @@ std::vector<Row> decay() {
           growth_row("100 m, nu 3.6, tau 0.5", shorter, -0.02, 0.02, sign, source),
           ratio_row("rate of 100 m over that of 200 m, nu 3.6, tau 0.5", shorter, longer, 4.0, 0.8,
                     "20 %: another start changes a rate by as much")};
-}
-
-std::vector<Row> growth_by_length() {
-  const Wave longest = without_gravity(400.0, 1.64), middle = without_gravity(200.0, 1.64);
-  return {
-      growth_row("200 m, nu 3.6, tau 1.64", middle, 1.0 / (30.0 * two_pi), 0.004, "the order, and the sign",
-                 "\"about 30 orbits\" to occur: REBOUND's example of overstability, a set-up of Rein & Latter 2013"),
-      growth_row("400 m, nu 3.6, tau 1.64", longest, 0.25 * middle.growth.rate, 0.25 * middle.growth.rate,
-                 "between nothing and half of the rate of 200 m, for which k^4 counts",
-                 "k^2, of long waves in a viscous fluid (Schmit & Tscharnuter 1995)"),
-      growth_row("70 m, nu 3.6, tau 1.64", without_gravity(70.0, 1.64), -0.02, 0.02, "the sign",
-                 "short waves are damped (Schmidt, Salo, Spahn & Petzschmann 2001)")};
 }
 
 // At r_h 0.5 to 0.6 the wave grows, and the power of the density lies along the orbit, though small wakes are there as
@@ -208,7 +154,7 @@ std::vector<Row> friction() {
 
 std::vector<Subject> overstability_subjects() {
   return {{"overstability-decay", "Viscous overstability", true, decay},
-          {"overstability", "Viscous overstability", false, growth_by_length},
+          {"overstability-relation", "Viscous overstability", false, waves_of_a_fluid},
           {"overstability-wakes", "Viscous overstability", false, overstability_or_wakes},
           {"overstability-friction", "Viscous overstability", false, friction}};
 }

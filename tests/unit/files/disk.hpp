@@ -1,9 +1,13 @@
 // Temporary folders and full disks.
 #pragma once
 
+#include "draws.hpp"
+
 #include <keeler/files/files.hpp>
 
+#include <algorithm>
 #include <csignal>
+#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -67,11 +71,13 @@ inline void write_quickly(const std::filesystem::path& file, std::string_view te
 }
 
 /// Replaces a file by damaged copies, truncated at many lengths or with one byte changed at many offsets, and calls
-/// `judge` for each. All of the last 200 bytes, which include the seal, are tried.
+/// `judge` for each. All of the last 200 bytes, which include the seal, are tried; where a sanitizer watches, one in
+/// seven.
 inline void for_each_damage(const std::filesystem::path& file, std::size_t stride,
                             const std::function<void(const std::string& damage)>& judge) {
   const std::string whole = files::read_text(file);
-  for (std::size_t at = 0; at < whole.size(); at += at + 200 < whole.size() ? stride : 1) {
+  const std::size_t stride_in_seal = std::min<std::size_t>(stride, sanitized ? 7 : 1);
+  for (std::size_t at = 0; at < whole.size(); at += at + 200 < whole.size() ? stride : stride_in_seal) {
     write_quickly(file, std::string_view(whole).substr(0, at));
     judge("cut at " + std::to_string(at));
     for (const char flip : {'\x01', '\x80'}) {

@@ -1,0 +1,128 @@
+// Waves in a ring without self-gravity against the dispersion relation of a viscous fluid. Its viscosity, and how that
+// rises with density, are those of the ring without a wave; the bulk viscosity and the slope of the pressure are fitted
+// to one wave, and foretell the others.
+#include "dispersion_relation.hpp"
+#include "waves.hpp"
+
+#include <keeler/core/units.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace keeler::validation {
+namespace {
+
+constexpr double dense = 1.64, apart = 0.2; // optical depths of the slopes are 0.2 above and below
+const std::string thin_layer = "planet.vertical_ratio=3.6"; // for the vertical self-gravity of a dense ring
+const char* const relation =
+    "dispersion relation of an isothermal viscous fluid (Schmit & Tscharnuter 1995, Schmidt, Salo, "
+    "Spahn & Petzschmann 2001)";
+
+// A wave in three realisations, since each has noise that grows or decays as the wave does.
+struct Waves {
+  std::string command;
+  Frequencies frequencies;
+  double k = 0.0; // 1/m
+  Estimate growth, frequency;
+  std::complex<double> rate() const { return {growth.value, frequency.value}; }
+};
+
+Waves waves_of(const WaveStart& start) {
+  Waves all;
+  std::vector<double> growths, frequencies;
+  for (const int seed : {1, 2, 3}) {
+    const Wave wave = seeded_wave(start, {thin_layer, fmt::format("particles.seed={}", seed)});
+    growths.push_back(wave.growth.rate);
+    frequencies.push_back(frequency_of(wave).rate);
+    all.command += (seed > 1 ? "; " : "") + wave.command;
+    all.frequencies = wave.patches.front().frequencies;
+  }
+  all.k = two_pi / start.length;
+  all.growth = mean_of(growths);
+  all.frequency = mean_of(frequencies);
+  return all;
+}
+
+// The ring without a wave, in Ω; the slope of the pressure is of runs that log their contacts
+// (examples/overstability/README.md).
+RingFluid steady_ring() {
+  const auto viscosity = [](double optical_depth) {
+    const Ran ran =
+        run_example("equilibrium", {"box.size=[200,30]", fmt::format("particles.optical_depth={:.2f}", optical_depth),
+                                    "time.end=12", "time.step=2e-3", thin_layer});
+    return transport_since(ran, 2.0).total->value / ran.snapshots.back().orbital_frequency;
+  };
+  const double below = viscosity(dense - apart), above = viscosity(dense + apart);
+  return {.viscosity = viscosity(dense),
+          .flux_slope = (above * (dense + apart) - below * (dense - apart)) / (2.0 * apart),
+          .pressure_slope = 52.6};
+}
+
+Row frequency_by_pressure(const Waves& waves, const RingFluid& steady) {
+  const double kappa = waves.frequencies.kappa;
+  const double lowest = std::sqrt(kappa * kappa + steady.pressure_slope * waves.k * waves.k),
+               highest = std::sqrt(kappa * kappa + 5.0 / 3.0 * steady.pressure_slope * waves.k * waves.k);
+  return {.what = "frequency / Omega of that wave",
+          .measured = waves.frequency.value,
+          .error = waves.frequency.error,
+          .expected = 0.5 * (lowest + highest),
+          .tolerance = 0.5 * (highest - lowest) + 2.0 * waves.frequency.error,
+          .tolerance_is = "from the pressure of the steady ring to 5/3 of it, and twice the error",
+          .source = "omega^2 = kappa^2 + k^2 dP/dSigma (Schmit & Tscharnuter 1995)",
+          .command = "of the same runs"};
+}
+
+// Two rows: growth rate and frequency of a wave, by the fluid that has the waves of 200 m.
+void add_foretold(std::vector<Row>& rows, const WaveStart& start, const RingFluid& steady, const Waves& fitted) {
+  const Waves waves = waves_of(start);
+  const auto foretold = [&](std::complex<double> of_fitted) {
+    return epicyclic_wave(with_wave(steady, fitted.frequencies, fitted.k, of_fitted), waves.frequencies, waves.k);
+  };
+  const std::complex<double> expected = foretold(fitted.rate());
+  const std::complex<double> by_growth = foretold(fitted.rate() + fitted.growth.error) - expected;
+  const std::complex<double> by_frequency =
+      foretold(fitted.rate() + std::complex<double>(0.0, fitted.frequency.error)) - expected;
+  const auto row = [&](const char* what, const Estimate& measured, double value, double error_of_growth,
+                       double error_of_frequency, const std::string& command) {
+    return Row{.what = fmt::format("{} / Omega of a wave of {} m, nu 3.6, tau 1.64", what, start.length),
+               .measured = measured.value,
+               .error = measured.error,
+               .expected = value,
+               .tolerance = 2.0 * std::hypot(measured.error, std::hypot(error_of_growth, error_of_frequency)),
+               .tolerance_is = "twice the error of both",
+               .source = fmt::format("{}, with bulk viscosity and pressure from the wave of 200 m", relation),
+               .command = command};
+  };
+  rows.push_back(
+      row("growth rate", waves.growth, expected.real(), by_growth.real(), by_frequency.real(), waves.command));
+  rows.push_back(
+      row("frequency", waves.frequency, expected.imag(), by_growth.imag(), by_frequency.imag(), "of the same runs"));
+}
+
+} // namespace
+
+std::vector<Row> waves_of_a_fluid() {
+  const RingFluid steady = steady_ring();
+  const Waves fitted = waves_of({.amplitude = 0.1, .length = 200.0, .width = 30.0, .depth = dense});
+  std::vector<Row> rows = {
+      {.what = "growth rate / Omega of a wave of 200 m, nu 3.6, tau 1.64",
+       .measured = fitted.growth.value,
+       .error = fitted.growth.error,
+       .expected = 1.0 / (30.0 * two_pi),
+       .tolerance = 0.004 + 2.0 * fitted.growth.error,
+       .tolerance_is = "the order, and the sign, and twice the error",
+       .source = "\"about 30 orbits\" to occur: REBOUND's example of overstability, a set-up of Rein & Latter 2013",
+       .command = fitted.command},
+      frequency_by_pressure(fitted, steady)};
+  fmt::print(stderr, "fluid: nu {} F' {} ; fitted xi/nu {} P' {}\n", steady.viscosity, steady.flux_slope,
+             with_wave(steady, fitted.frequencies, fitted.k, fitted.rate()).bulk_viscosity / steady.viscosity,
+             with_wave(steady, fitted.frequencies, fitted.k, fitted.rate()).pressure_slope);
+  add_foretold(rows, {.amplitude = 0.1, .length = 400.0, .width = 15.0, .depth = dense}, steady, fitted);
+  // before the wave has gone down to the noise
+  add_foretold(rows, {.amplitude = 0.15, .length = 70.0, .width = 172.0, .depth = dense, .since = 1.0, .end = 8.0},
+               steady, fitted);
+  return rows;
+}
+
+} // namespace keeler::validation
