@@ -4,8 +4,9 @@ vanish. Each life of a run has another number of ranks; in the end nothing diffe
 import os
 import signal
 import subprocess
+import tempfile
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from disks import MOUNTED, mounter
@@ -54,12 +55,15 @@ class Ranks:
 
     scenes: object
     program: str
+    # where launchers keep what a killed one leaves behind, and another may stumble over
+    sessions: object = field(default_factory=tempfile.TemporaryDirectory)
 
     def words(self, count, words):
         return ["mpirun", "-n", str(count), *TRANSPORT, self.program, *map(str, words)]
 
     def start(self, words, limits=None, env=None, **options):
-        environment = {**os.environ, **LAUNCHER, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive", **(env or {})}
+        environment = {**os.environ, **LAUNCHER, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive",
+                       "OMPI_MCA_orte_tmpdir_base": tempfile.mkdtemp(dir=self.sessions.name), **(env or {})}
         if limits is not None:
             options["preexec_fn"] = limits.set
         return subprocess.Popen(list(map(str, words)), env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
