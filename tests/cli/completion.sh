@@ -7,7 +7,7 @@ cd "$work" || exit 1
 
 # offers NAMES WORD... -- TYPED...: completing the typed words gives this first line, and candidates that include the words
 offers() {
-  local names=$1 expected=()
+  local names=$1 expected=() lines word
   shift
   while [ "$1" != -- ]; do
     expected+=("$1")
@@ -15,13 +15,16 @@ offers() {
   done
   shift
   accepts "complete $*" complete keeler "$@"
-  [ "$(head -n 1 out)" = "$names" ] || fail "complete $*: $(head -n 1 out) instead of $names"
+  mapfile -t lines <out
+  [ "${lines[0]}" = "$names" ] || fail "complete $*: ${lines[0]} instead of $names"
+  candidates=("${lines[@]:1}")
+  candidates=("${candidates[@]%%$'\t'*}")
   for word in "${expected[@]}"; do
-    tail -n +2 out | cut -f 1 | grep -qxF -e "$word" || fail "complete $*: no '$word' in $(cut -f 1 out | tr '\n' ' ')"
+    [[ " ${candidates[*]} " == *" $word "* ]] || fail "complete $*: no '$word' in ${candidates[*]}"
   done
 }
 # only COUNT: the last call of offers had this number of candidates
-only() { [ "$(tail -n +2 out | wc -l)" -eq "$1" ] || fail "$1 expected: $(cat out)"; }
+only() { [ "${#candidates[@]}" -eq "$1" ] || fail "$1 expected: $(cat out)"; }
 
 offers none render report resume -- re
 only 3
@@ -32,7 +35,7 @@ only 2
 offers none --theme=dark -- render run --theme=d
 only 1
 offers none --width -- render run --theme dark --
-tail -n +2 out | cut -f 1 | grep -qx -e '--theme' && fail "an option is offered again"
+[[ " ${candidates[*]} " == *" --theme "* ]] && fail "an option is offered again"
 offers none --set -- run scene.toml --set time.end=1 -- # but one that may be repeated
 offers none collisions.finder= -- run scene.toml --set collisions.f
 offers none collisions.finder=certified -- run scene.toml --set collisions.finder=ce
@@ -53,7 +56,7 @@ offers none -- run scene.toml --wall-time ''
 only 0
 "$keeler" new --list | cut -d ' ' -f 1 >examples
 offers none moonlet -- new ''
-tail -n +2 out | cut -f 1 | diff - examples || fail "new: other examples than those of --list"
+printf '%s\n' "${candidates[@]}" | diff - examples || fail "new: other examples than those of --list"
 offers none -- comp
 only 0
 
@@ -61,17 +64,17 @@ only 0
 runs 0 --help
 commands_in out >commands
 offers none -- ''
-tail -n +2 out | cut -f 1 | sort | diff - commands || fail "other commands than those of --help"
+printf '%s\n' "${candidates[@]}" | sort | diff - commands || fail "other commands than those of --help"
 man=$(dirname "$keeler")/man
 while read -r command; do
   offers none --help -- "$command" --
-  tail -n +2 out | cut -f 1 | sort >offered
+  printf '%s\n' "${candidates[@]}" | sort >offered
   "$keeler" "$command" --help | grep -oE -- '^  (-[a-z],)?--[a-z-]+' | grep -oE -- '--[a-z-]+' | sort | diff offered - ||
     fail "$command: other options than those of --help"
   # shellcheck disable=SC1003 # a backslash
   page=$(tr -d '\\' <"$man/keeler-$command.1")
   while read -r option; do
-    grep -qF -e "$option" <<<"$page" || fail "keeler-$command.1 lacks $option"
+    [[ $page == *"$option"* ]] || fail "keeler-$command.1 lacks $option"
   done <offered
   # shellcheck disable=SC1003
   grep -qF "keeler-$command(1)" <(tr -d '\\' <"$man/keeler.1" | sed 's/fB//; s/fR//') || fail "keeler.1 lacks $command"

@@ -15,8 +15,11 @@ sed -nE 's/^\| `keeler ([a-z]+).*/\1/p' "$source_dir/README.md" | sort | diff "$
 sed -nE 's/^## keeler ([a-z]+)$/\1/p' "$manual" | sort | diff "$work/commands" - ||
   fail "the manual has other commands than --help"
 
-# section COMMAND: prints the manual's section about it
-section() { sed -n "/^## keeler $1\$/,/^## /p" "$manual"; }
+# read_section COMMAND: sets $section to the manual's section about it
+read_section() { section=$(sed -n "/^## keeler $1\$/,/^## /p" "$manual"); }
+
+# has_option OPTION: the section has it, and not as the begin of a longer one
+has_option() { [[ $section =~ $1([^a-z-]|$) ]]; }
 
 # examples_are_understood NAME HELP: the program refuses only the option that is appended to each example
 examples_are_understood() {
@@ -30,6 +33,7 @@ examples_are_understood() {
 }
 
 while read -r command; do
+  read_section "$command"
   accepts "help of $command" "$command" --help
   prints "help of $command" "keeler $command"
   cp "$work/out" "$work/help"
@@ -37,33 +41,33 @@ while read -r command; do
   while read -r part; do # keeler bench drift, ...
     accepts "help of $command $part" "$command" "$part" --help
     prints "help of $command $part" "keeler $command $part"
-    section "$command" | grep -qF "keeler $command $part" || fail "the manual does not have $command $part"
+    [[ $section == *"keeler $command $part"* ]] || fail "the manual does not have $command $part"
     cat "$work/out" >>"$work/help"
   done <"$work/parts"
   examples_are_understood "$command" "$work/help"
   sed -i '/^  keeler /d' "$work/help"
   grep -oE -- '--[a-z][a-z-]*' "$work/help" | sort -u | grep -v -- '^--help$' >"$work/options"
   while read -r option; do
-    section "$command" | grep -qE -- "$option\b" || fail "the manual does not have $command $option"
+    has_option "$option" || fail "the manual does not have $command $option"
   done <"$work/options"
-  section "$command" | grep -oE -- '--[a-z][a-z-]*' | sort -u | while read -r option; do
-    grep -qxF -- "$option" "$work/options" || echo "$command has no $option"
-  done >"$work/unknown"
-  [ -s "$work/unknown" ] && fail "the manual is ahead: $(cat "$work/unknown")"
+  grep -oE -- '--[a-z][a-z-]*' <<<"$section" | sort -u | comm -23 - "$work/options" >"$work/unknown"
+  [ -s "$work/unknown" ] && fail "the manual is ahead: $command has no $(cat "$work/unknown")"
 done <"$work/commands"
 
 # names COMMAND: every name in the two upper levels of the printed JSON is in the manual's section
 names() {
   local name
+  read_section "$1"
   while read -r name; do
-    section "$1" | grep -qE "[\`.]${name}[\`.]" || fail "the manual does not have the name $name of $1"
+    [[ $section =~ [\`.]${name}[\`.] ]] || fail "the manual does not have the name $name of $1"
   done < <(sed -nE 's/^ {2,4}"([a-z_0-9]+)":.*/\1/p' "$work/out" | sort -u)
 }
 # explained: every name in the printed JSON, except of a scatter, is in the page on numbers
 explained() {
-  local name
+  local name content
+  content "$source_dir/docs/manual/numbers.md"
   while read -r name; do
-    grep -qE "[\`.]$name\`" "$source_dir/docs/manual/numbers.md" || fail "no explanation of the number $name"
+    [[ $content =~ [\`.]${name}\` ]] || fail "no explanation of the number $name"
   done < <(sed -nE 's/^ +"([a-z_0-9]+)":.*/\1/p' "$work/out" | sed 's/_scatter//' | sort -u)
 }
 runs 0 bench drift --count 200 --repeats 1 --json
