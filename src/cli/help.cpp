@@ -93,6 +93,19 @@ bool is_command(const CLI::App& program, const std::string& word) {
                      [&](const CLI::App* command) { return command->get_name() == word; });
 }
 
+// Adds the names of numbers, and of keys of a scene, their last parts and their tables.
+void add_names(std::vector<std::string>& names) {
+  for (const NumberTable& table : number_tables())
+    for (const quantities::Quantity& quantity : table.quantities)
+      names.insert(names.end(), {quantity.name, quantity.full_name()});
+  for (const Key& key : scene::scene_keys()) {
+    const std::size_t dot = key.path.rfind('.');
+    names.push_back(key.path);
+    if (dot != std::string::npos)
+      names.insert(names.end(), {key.path.substr(0, dot), key.path.substr(dot + 1)});
+  }
+}
+
 // Returns the command named by these words, such as {"bench", "drift"}. Throws UsageError with a suggestion.
 const CLI::App& find_command(const CLI::App& program, const std::vector<std::string>& words) {
   const CLI::App* command = &program;
@@ -106,12 +119,8 @@ const CLI::App& find_command(const CLI::App& program, const std::vector<std::str
     }
     if (!found) {
       if (command == &program)
-        for (const NumberTable& table : number_tables())
-          for (const quantities::Quantity& quantity : table.quantities)
-            names.insert(names.end(), {quantity.name, quantity.full_name()});
-      if (command == &program)
-        for (const Key& key : scene::scene_keys())
-          names.push_back(key.path);
+        add_names(names);
+      std::erase(names, word); // known, but not as a command with the words behind it
       const std::string near = closest(word, names);
       throw UsageError(fmt::format("'{}' has no command '{}'; {}", full_name(*command), word,
                                    near.empty()
@@ -167,13 +176,10 @@ void add_help(CLI::App& program, Action& action) {
         return list_numbers();
       const std::string name = fmt::format("{}", fmt::join(*words, " "));
       using quantities::Quantity;
-      const bool may_be_key = words->size() == 1 && !is_command(program, name);
-      const bool is_number =
-          explain_numbers([&](const Quantity& one) { return one.is_called(name) || is_labelled(one, name); });
-      if ((may_be_key && explain_keys(name)) || is_number)
-        return ExitCode::done;
-      if (!words->empty() && !is_command(program, words->front()) &&
-          explain_numbers([&](const Quantity& one) { return mentions(one, name); }))
+      const bool is_other = !words->empty() && !is_command(program, words->front());
+      const bool is_key = is_other && explain_keys(name);
+      if (explain_numbers([&](const Quantity& one) { return one.is_called(name) || is_labelled(one, name); }) ||
+          (is_other && explain_numbers([&](const Quantity& one) { return mentions(one, name); })) || is_key)
         return ExitCode::done;
       return print_help(find_command(program, *words));
     };

@@ -352,12 +352,14 @@ void Communicator::together(const std::function<void()>& work) const {
     error = error_at_hand();
     thrown = std::current_exception();
   }
-  const auto reporter = static_cast<std::size_t>(min(static_cast<double>(error ? rank_ : size_)));
-  if (reporter == size_)
+  const std::size_t turn = !error ? 2 * size_ : is_interrupted ? size_ + rank_ : rank_; // faults before interruptions
+  const auto first = static_cast<std::size_t>(min(static_cast<double>(turn)));
+  if (first == 2 * size_)
     return;
+  const std::size_t reporter = first % size_;
   error_is_common = true;
   another_reports = reporter != rank_;
-  // the lowest failed rank sends its error to all: three digits of the code, i or e, then the text
+  // the first rank in turn sends its error to all: three digits of the code, i or e, then the text
   Parcels parcels(size_);
   if (reporter == rank_) {
     const std::string text =

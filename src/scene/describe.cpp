@@ -53,9 +53,9 @@ std::string table_of(const std::vector<Row>& rows, bool markdown) {
   return out;
 }
 
-// Returns whether the key has this path or this last part of it, or is in the table of this name.
+// Returns whether the key has this path or this last part of it, or is in a table of this name, such as "friction".
 bool is_called(const Key& key, const std::string& name) {
-  return key.path == name || key.path.ends_with('.' + name) || key.path.starts_with(name + '.');
+  return !name.empty() && fmt::format(".{}.", key.path).find(fmt::format(".{}.", name)) != std::string::npos;
 }
 
 } // namespace

@@ -29,8 +29,8 @@ inline const config::Section* find_section(const std::string& path) {
 /// Returns every key with default, unit and meaning, as a text table or as the manual's Markdown table.
 std::string describe_keys(bool markdown);
 
-/// Returns the same text table of the keys with this path, such as "gravity.solver", or its last part, or in the table
-/// of this name, such as "gravity"; empty if there are none.
+/// Returns the same text table of the keys with this path, such as "gravity.solver", or its last part, or in a table of
+/// this name, such as "friction"; empty if there are none.
 std::string describe_keys_called(const std::string& name);
 
 } // namespace keeler::scene

@@ -45,6 +45,11 @@ prints "a key" "keys of a scene"
 prints "a key" "gravity.resting_contacts "
 accepts "a table" help collisions.friction
 prints "a table" "collisions.friction.coefficient "
+accepts "a word of keys and numbers" help density
+prints "a word of keys and numbers" "particles.density "
+prints "a word of keys and numbers" "  surface_density"
+refuses "a key and more" "has no command 'gravity.solver'; \"keeler help\" lists" help gravity.solver x
+refuses "nearly a table" "did you mean 'collisions.friction'?" help collisions.frictoin
 refuses "nearly a key" "has no command 'gravity.resting_contact'; did you mean 'gravity.resting_contacts'?" help gravity.resting_contact
 refuses "no number" "has no command 'viscos_ty'" help viscos_ty
 refuses "no command" "has no command 'sweeep'; did you mean 'sweep'?" sweeep

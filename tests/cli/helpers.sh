@@ -34,13 +34,13 @@ accepts() {
   [ -s "$work/err" ] && fail "$name: $(cat "$work/err")"
 }
 
-# content FILE: sets $content to the text of the file up to its first NUL, without a process of its own
-content() { IFS= LC_ALL=C read -r -d '' content <"$1" || true; }
+# content FILE: sets $content to the text of the file, without a process of its own; fails if it holds a NUL
+content() { ! IFS= LC_ALL=C read -r -d '' content <"$1"; }
 
 # prints NAME WORDS: the last command printed the words
 prints() {
   local content
-  content "$work/out"
+  content "$work/out" || fail "$1: a NUL on stdout"
   [[ $content == *"$2"* ]] || fail "$1: no '$2' in: $content"
 }
 

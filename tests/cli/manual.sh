@@ -65,7 +65,7 @@ names() {
 # explained: every name in the printed JSON, except of a scatter, is in the page on numbers
 explained() {
   local name content
-  content "$source_dir/docs/manual/numbers.md"
+  content "$source_dir/docs/manual/numbers.md" || fail "a NUL in the manual"
   while read -r name; do
     [[ $content =~ [\`.]${name}\` ]] || fail "no explanation of the number $name"
   done < <(sed -nE 's/^ +"([a-z_0-9]+)":.*/\1/p' "$work/out" | sed 's/_scatter//' | sort -u)

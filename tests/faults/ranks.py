@@ -55,8 +55,8 @@ class Ranks:
 
     scenes: object
     program: str
-    # where launchers keep what a killed one leaves behind, and another may stumble over
-    sessions: object = field(default_factory=tempfile.TemporaryDirectory)
+    # A killed launcher leaves its folder behind, and another one may fail at it: so each has its own (Open MPI 4).
+    sessions: object = field(default_factory=lambda: tempfile.TemporaryDirectory(ignore_cleanup_errors=True))
 
     def words(self, count, words):
         return ["mpirun", "-n", str(count), *TRANSPORT, self.program, *map(str, words)]

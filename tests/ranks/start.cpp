@@ -115,6 +115,12 @@ TEST_CASE("work that one rank interrupts is interrupted on all, which may go on"
         throw Interrupted();
     };
     CHECK_THROWS_AS(launched().together(interrupt), Interrupted);
+    const auto interrupt_or_fail = [&] {
+      if (launched().rank() == rank)
+        throw InvariantError("a fault");
+      throw Interrupted();
+    };
+    CHECK_THROWS_WITH_AS(launched().together(interrupt_or_fail), "a fault", Error);
     CHECK(launched().max(static_cast<double>(launched().rank())) == static_cast<double>(launched().size() - 1));
   }
 }

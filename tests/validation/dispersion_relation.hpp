@@ -1,12 +1,13 @@
 // Axisymmetric waves in a ring that is a viscous fluid without self-gravity (Schmit & Tscharnuter 1995, Icarus 115,
-// 304; Schmidt, Salo, Spahn & Petzschmann 2001, Icarus 153, 316). Of exp(ikx + st), with surface density Σ(1 + σ) and Ω
-// = 1:
+// 304; Schmidt, Salo, Spahn & Petzschmann 2001, Icarus 153, 316). For perturbations that go as exp(ikx + st), with the
+// surface density Σ(1 + σ), the velocities u along the radius and v along the orbit relative to the shear, and Ω = 1:
 //
 //   s σ = -ik u
 //   s u = 2 v - ik P' σ - (4ν/3 + ξ) k² u
 //   s v = -κ²/2 u - ik S F' σ - ν k² v
 //
-// with P' = dP/dΣ, F' = d(νΣ)/dΣ and the bulk viscosity ξ.
+// with the shear rate S, P' = dP/dΣ, F' = d(νΣ)/dΣ and the bulk viscosity ξ. The outward wave has Im s < 0, and the
+// inward one the conjugate.
 #pragma once
 
 #include <keeler/hill/elements.hpp>
@@ -23,7 +24,7 @@ struct RingFluid {
   double bulk_viscosity = 0.0; ///< ξ, m²
 };
 
-/// Returns growth rate and frequency (the imaginary part) of the epicyclic wave with the wavenumber k, 1/m.
+/// Returns growth rate and frequency (the imaginary part, above 0) of the epicyclic waves with the wavenumber k, 1/m.
 std::complex<double> epicyclic_wave(const RingFluid& ring, const Frequencies& f, double k);
 
 /// Returns the fluid with the slope of the pressure and the bulk viscosity for which that wave has this growth rate and

@@ -34,8 +34,8 @@ Row growth_row(const std::string& wave_of, const Wave& wave, double expected, do
           .measured = wave.growth.rate,
           .error = *wave.growth.error,
           .expected = expected,
-          .tolerance = tolerance + 2.0 * *wave.growth.error,
-          .tolerance_is = fmt::format("{}, and twice the error", tolerance_is),
+          .tolerance = tolerance,
+          .tolerance_is = tolerance_is,
           .source = source,
           .command = wave.command};
 }

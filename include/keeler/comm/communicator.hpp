@@ -128,8 +128,8 @@ public:
   }
 
   /// Runs the work on every rank. If it throws an Error on any rank, all ranks throw: the lowest such rank its own
-  /// exception, the others an Error of the same code and text, or Interrupted if it is that, which they need not
-  /// report.
+  /// exception, the others an Error of the same code and text, which they need not report. All throw Interrupted if no
+  /// rank has another error.
   void together(const std::function<void()>& work) const;
   /// As together(), with work for the root alone.
   void on_root(const std::function<void()>& work) const;

@@ -103,6 +103,7 @@ TEST_CASE("keys are described by their path, their last part, or their table") {
   CHECK(lines("gravity.kick_every") == 2); // with the titles
   CHECK(lines("kick_every") == 2);
   CHECK(lines("particles.streamlines") == 4);
+  CHECK(lines("friction") == lines("collisions.friction"));
   CHECK(lines("kick") == 0);
   CHECK(lines("") == 0);
 }
