@@ -48,9 +48,9 @@ rows::Subject shown(const Subject& subject) {
 
 std::vector<rows::Subject> all_subjects() {
   std::vector<rows::Subject> all;
-  for (const auto& subjects :
-       {exact_subjects(), two_body_subjects(), balance_subjects(), literature_subjects(), overstability_subjects(),
-        particle_subjects(), satellite_subjects(), moonlet_subjects(), light_subjects(), light_of_rings_subjects()})
+  for (const auto& subjects : {exact_subjects(), two_body_subjects(), balance_subjects(), literature_subjects(),
+                               overstability_subjects(), fluid_wave_subjects(), particle_subjects(),
+                               satellite_subjects(), moonlet_subjects(), light_subjects(), light_of_rings_subjects()})
     for (const Subject& subject : subjects)
       all.push_back(shown(subject));
   return all;

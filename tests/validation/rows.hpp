@@ -40,6 +40,7 @@ std::vector<Subject> two_body_subjects();
 std::vector<Subject> balance_subjects();
 std::vector<Subject> literature_subjects();
 std::vector<Subject> overstability_subjects();
+std::vector<Subject> fluid_wave_subjects();
 std::vector<Subject> particle_subjects();
 std::vector<Subject> satellite_subjects();
 std::vector<Subject> moonlet_subjects();

@@ -1,8 +1,6 @@
 // Runs of a ring with one axisymmetric wave, as long as the box, that is there at the start.
 #pragma once
 
-#include "rows.hpp"
-
 #include <keeler/diagnostics/radial_modes.hpp>
 #include <keeler/particles/patch.hpp>
 
@@ -33,8 +31,5 @@ Wave seeded_wave(const WaveStart& start, std::vector<std::string> more);
 /// Returns the frequency of the outward wave, which goes as exp(i(kx - wt)), in Ω, with its error: κ less the rate of
 /// its phase against epicycles without forces.
 diagnostics::Growth frequency_of(const Wave& wave);
-
-/// Rows that hold waves of several lengths against the dispersion relation of a fluid.
-std::vector<Row> waves_of_a_fluid();
 
 } // namespace keeler::validation
