@@ -8,6 +8,7 @@
 #include <keeler/comm/communicator.hpp>
 #include <keeler/comm/same_request.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/memory.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/version.hpp>
 
@@ -124,6 +125,8 @@ Parsed parse(CLI::App& program, int argc, char** argv, const Communicator& ranks
 
 int run(int argc, char** argv) {
   const Communicator ranks = Communicator::launched();
+  if (!ranks.distributed()) // ranks return it
+    keep_freed_memory();
   if (!ranks.is_root() && !std::freopen("/dev/null", "w", stdout)) // only rank 0 prints results
     throw IoError("cannot open /dev/null");
   CLI::App program("Keeler simulates a self-gravitating patch of a planetary ring.", "keeler");

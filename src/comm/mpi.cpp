@@ -4,6 +4,7 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/exact_sum.hpp>
 #include <keeler/core/interrupt.hpp>
+#include <keeler/core/memory.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/version.hpp>
 
@@ -19,7 +20,6 @@
 #include <optional>
 #include <utility>
 
-#include <malloc.h>
 #include <mpi.h>
 
 namespace keeler::comm {
@@ -88,19 +88,6 @@ void require_one_build(const Communicator& ranks) {
   });
 }
 
-// Returns free blocks to the system early. By default blocks of up to 32 MiB stay in the heap when they have been
-// freed. A rank's arrays are of that size and change it all the time, which makes gaps: ranks held half as much again
-// per particle than one process, whose arrays are larger (docs/dev/ranks.md). A variable of the user's stays.
-void keep_little_free_memory() {
-#ifdef __GLIBC__
-  constexpr int longest_in_heap = 1 << 20, longest_free_end = 8 << 20; // bytes
-  if (std::getenv("MALLOC_MMAP_THRESHOLD_") || std::getenv("GLIBC_TUNABLES"))
-    return;
-  mallopt(M_MMAP_THRESHOLD, longest_in_heap);
-  mallopt(M_TRIM_THRESHOLD, longest_free_end);
-#endif
-}
-
 } // namespace
 
 Communicator Communicator::launched() {
@@ -113,7 +100,7 @@ Communicator Communicator::launched() {
   MPI_Comm_size(MPI_COMM_WORLD, &size);
   is_launched = true;
   if (size > 1)
-    keep_little_free_memory();
+    return_freed_memory();
   const Communicator ranks(static_cast<std::size_t>(rank), static_cast<std::size_t>(size));
   require_one_build(ranks);
   return ranks;

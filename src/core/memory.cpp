@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 
+#include <malloc.h>
 #include <sys/resource.h>
 
 namespace keeler {
@@ -69,6 +71,10 @@ double free_address_space() {
   return std::max(0.0, static_cast<double>(limit.rlim_cur) - (used >= 0.0 ? used : 0.0));
 }
 
+bool user_sets_allocator() {
+  return std::getenv("MALLOC_MMAP_THRESHOLD_") || std::getenv("GLIBC_TUNABLES");
+}
+
 } // namespace
 
 // Not ru_maxrss of getrusage(2), which includes the process before exec.
@@ -97,6 +103,25 @@ std::size_t affordable_size(double count, double bytes_each, const std::string& 
   const double counted = count >= 0.0 ? count : std::numeric_limits<double>::quiet_NaN();
   require_memory(std::max(1.0, bytes_each) * counted, what, remedy);
   return static_cast<std::size_t>(counted);
+}
+
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  if (user_sets_allocator())
+    return;
+  mallopt(M_MMAP_MAX, 0);        // all blocks come from the heap,
+  mallopt(M_TRIM_THRESHOLD, -1); // which never shrinks
+#endif
+}
+
+void return_freed_memory() {
+#ifdef __GLIBC__
+  constexpr int longest_in_heap = 4 << 20, longest_free_end = 8 << 20; // bytes
+  if (user_sets_allocator())
+    return;
+  mallopt(M_MMAP_THRESHOLD, longest_in_heap);
+  mallopt(M_TRIM_THRESHOLD, longest_free_end);
+#endif
 }
 
 } // namespace keeler

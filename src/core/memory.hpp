@@ -22,6 +22,15 @@ void require_memory(double bytes, const std::string& what, const std::string& re
 /// or NaN, or memory is missing for so many items of `bytes_each` (>= 0). `what` names the items.
 std::size_t affordable_size(double count, double bytes_each, const std::string& what, const std::string& remedy);
 
+/// Makes the C library keep freed blocks of any size for the next ones, for the rest of this process. By default it
+/// returns blocks of 32 MiB and more to the system, so a large patch fetches the memory of each kick page by page.
+/// Does nothing if the environment sets MALLOC_MMAP_THRESHOLD_ or GLIBC_TUNABLES, or without the GNU C library.
+void keep_freed_memory();
+
+/// Makes it return freed blocks to the system early, for the rest of this process; else as keep_freed_memory(). A
+/// rank's arrays change their size all the time, and leave gaps in memory that is kept (docs/dev/ranks.md).
+void return_freed_memory();
+
 /// Empties a vector and frees its memory, which `v = {}` keeps: that assigns an empty list.
 template<class T> void free_memory(std::vector<T>& v) {
   std::vector<T>().swap(v);
