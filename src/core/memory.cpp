@@ -116,7 +116,7 @@ void keep_freed_memory() {
 
 void return_freed_memory() {
 #ifdef __GLIBC__
-  constexpr int longest_in_heap = 4 << 20, longest_free_end = 8 << 20; // bytes
+  constexpr int longest_in_heap = 4 << 20, longest_free_end = 32 << 20; // bytes
   if (user_sets_allocator())
     return;
   mallopt(M_MMAP_THRESHOLD, longest_in_heap);

@@ -2,14 +2,62 @@
 
 #include <keeler/core/error.hpp>
 
+#include "draws.hpp"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <vector>
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace memory_test {
 
 using namespace keeler;
+
+struct Faults {
+  long first, second;
+};
+
+// Returns the page faults of two arrays that are filled one after the other, in a process with this policy.
+Faults faults_of_arrays(void (*set_policy)()) {
+  int ends[2];
+  REQUIRE(pipe(ends) == 0);
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    set_policy();
+    long counts[3] = {};
+    for (long& count : counts) {
+      rusage used{};
+      getrusage(RUSAGE_SELF, &used);
+      count = used.ru_minflt;
+      const std::vector<char> array(std::size_t{100} << 20, 1);
+    }
+    const Faults faults{counts[1] - counts[0], counts[2] - counts[1]};
+    _exit(write(ends[1], &faults, sizeof faults) == sizeof faults ? 0 : 1);
+  }
+  Faults faults{};
+  CHECK(read(ends[0], &faults, sizeof faults) == sizeof faults);
+  waitpid(child, nullptr, 0);
+  close(ends[0]);
+  close(ends[1]);
+  return faults;
+}
+
+#ifdef __GLIBC__
+TEST_CASE("an array in kept memory costs no page faults, one in returned memory as many as before") {
+  if (test::sanitized || std::getenv("GLIBC_TUNABLES") || std::getenv("MALLOC_MMAP_THRESHOLD_"))
+    return; // another allocator, or another policy
+  const Faults kept = faults_of_arrays(keep_freed_memory), returned = faults_of_arrays(return_freed_memory);
+  CHECK(kept.first > 20); // of 2 MB at most
+  CHECK(kept.second <= kept.first / 10);
+  CHECK(returned.second >= returned.first / 2);
+}
+#endif
 
 TEST_CASE("the peak of memory grows with allocations and does not decrease") {
   constexpr std::size_t bytes = 200'000'000;
