@@ -107,7 +107,7 @@ std::vector<SummaryRow> end_rows() {
                  {"unresolved_contacts_share", unit::none, "unresolved contacts",
                   "fraction of the contacts that are slower than the speed from one kick of the pair's own gravity"}),
        [](From s) { return unresolved_fraction(s); }},
-      {{"resting_contacts", unit::none, "contacts at rest",
+      {{"resting_contacts", unit::none, "resting pairs",
         "resting pairs at the end, which transmit the kicks; null where the scene does not treat them so"},
        [](From s) {
          return carries(s) ? Value(std::uint64_t{s.simulation.state().resting.pairs.size()}) : Value(Unknown{});
