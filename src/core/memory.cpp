@@ -72,7 +72,11 @@ double free_address_space() {
 }
 
 bool user_sets_allocator() {
-  return std::getenv("MALLOC_MMAP_THRESHOLD_") || std::getenv("GLIBC_TUNABLES");
+  for (const char* name :
+       {"GLIBC_TUNABLES", "MALLOC_MMAP_MAX_", "MALLOC_MMAP_THRESHOLD_", "MALLOC_TRIM_THRESHOLD_", "MALLOC_TOP_PAD_"})
+    if (std::getenv(name))
+      return true;
+  return false;
 }
 
 } // namespace

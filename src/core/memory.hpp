@@ -24,7 +24,7 @@ std::size_t affordable_size(double count, double bytes_each, const std::string& 
 
 /// Makes the C library keep freed blocks of any size for the next ones, for the rest of this process. By default it
 /// returns blocks of 32 MiB and more to the system, so a large patch fetches the memory of each kick page by page.
-/// Does nothing if the environment sets MALLOC_MMAP_THRESHOLD_ or GLIBC_TUNABLES, or without the GNU C library.
+/// Does nothing if the environment sets GLIBC_TUNABLES or a variable of mallopt(3), or without the GNU C library.
 void keep_freed_memory();
 
 /// Makes it return freed blocks to the system early, for the rest of this process; else as keep_freed_memory(). A
