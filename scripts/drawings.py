@@ -163,21 +163,22 @@ def neighbour_lists():
 
 
 def contact_domains():
-    d = Drawing("Domains of the contact loop: blocks, shifted blocks, and the whole box", 760, 360)
+    d = Drawing("Domains of the contact loop: blocks, blocks shifted twice, and the whole box", 960, 360)
     side, half, top = 200, 50, 46
-    lefts = (40, 280, 520)
-    for left, words in zip(lefts, ("round 1: blocks", "round 2: shifted by half a block", "last round: the whole box")):
+    lefts = (25, 261, 497, 733)
+    for left, words in zip(lefts, ("round 1: blocks", "round 2: shifted by half a block", "round 3: by a quarter", "last round: the whole box")):
         d.text(left + side / 2, 30, words, "middle")
         d.rect(left, top, side, side, "pc", 2)
     for k in (0, 1):
         for m in (0, 1):
             if k != m:
                 d.rect(lefts[0] + 2 * k * half, top + 2 * m * half, 2 * half, 2 * half, "pa")
-    shifted = ((-1, 1), (1, 2), (3, 1))  # begin and width along one side, of the box
-    for k, (x, wide) in enumerate(shifted):
-        for m, (y, high) in enumerate(shifted):
-            if k % 2 != m % 2:
-                d.rect(lefts[1] + max(x, 0) * half, top + max(y, 0) * half, wide * half, high * half, "pa")
+    for left, shift in ((lefts[1], 1.0), (lefts[2], 0.5)):
+        shifted = ((0, 2 - shift), (2 - shift, 2), (4 - shift, shift))  # begin and width along one side, of the box
+        for k, (x, wide) in enumerate(shifted):
+            for m, (y, high) in enumerate(shifted):
+                if k % 2 != m % 2:
+                    d.rect(left + x * half, top + y * half, wide * half, high * half, "pa")
 
     def contact(x, y, look):
         d.dot(x - 5, y, 5, look)
@@ -193,10 +194,11 @@ def contact_domains():
     in_rounds(2.0, 2.4, 1)
     in_rounds(1.4, 2.05, 1)
     in_rounds(2.0, 0.98, 2)
-    d.lines(40, 278, (
+    in_rounds(3.25, 3.25, 3)
+    d.lines(25, 278, (
         "A contact is carried out (blue) if its domain owns both particles and all particles on their lists. Otherwise it is deferred",
-        "(orange), with all later contacts of its two particles. To the last round come contacts where edges of both rounds cross.",
-        "If a deferred contact disturbs one that an earlier round has carried out, that one is rolled back."))
+        "(orange), with all later contacts of its two particles. Edges of the first two rounds cross in the middle parts of the third's blocks.",
+        "A hit that leaves its skin goes on to the last round. If a deferred contact disturbs one that an earlier round has carried out, that one is rolled back."))
     return d
 
 

@@ -24,8 +24,9 @@ struct DriftCosts {
   std::uint64_t recontacts = 0;    ///< of these: the last contact of both particles in the step was with each other
   std::uint64_t lists_rebuilt = 0; ///< single lists rebuilt because their particle left its skin
   std::uint64_t deferred = 0;      ///< events that the first round of domains left to the second
-  std::uint64_t in_sequence = 0;   ///< events that the second round left to the last, which is one domain
+  std::uint64_t in_sequence = 0;   ///< events left to the last round, which is one domain
   std::uint64_t rolled_back = 0;   ///< contacts that a deferred one contradicted
+  std::uint64_t abandoned = 0;     ///< steps that domains left to the sequential loop
   std::uint64_t widest_list = 0;   ///< largest number of partners of one particle within one search
 
   // distributed steps

@@ -1,8 +1,9 @@
 // The division of the box into domains of contacts: each round cuts it into a grid of blocks. Those of the second round
-// are shifted by half a block in both directions; the domain of the last round is the whole box.
+// are shifted by half a block in both directions, and those of the third by a quarter, so the places where edges of the
+// first two cross are in their middle parts. The domain of the last round is the whole box.
 //
-// Invariant: in each round every position belongs to exactly one domain. Across the x edge of the box, blocks of the
-// second round hold images, which the shear has moved along the box.
+// Invariant: in each round every position belongs to exactly one domain. Across the x edge of the box, shifted blocks
+// hold images, which the shear has moved along the box.
 #pragma once
 
 #include "neighbours/line.hpp"
@@ -17,9 +18,9 @@ namespace keeler::collision {
 
 class DomainCut {
 public:
-  static constexpr std::size_t rounds = 3;
+  static constexpr std::size_t rounds = 4;
   /// Largest number of domains per round.
-  static constexpr std::size_t max_domains = 2047;
+  static constexpr std::size_t max_domains = 1364;
 
   /// Cuts the box into at most `domains` blocks per round, nearly square in a box whose sides have this ratio. Images
   /// across the outer x edge are moved by `offset_y` along the box. Precondition: 0 < domains <= max_domains.
@@ -32,7 +33,7 @@ public:
   }
 
   /// Returns the number of domains of all rounds, which are numbered round by round: [begin_of(r), end_of(r)).
-  std::size_t domains() const { return 2 * per_round() + 1; }
+  std::size_t domains() const { return (rounds - 1) * per_round() + 1; }
   std::size_t begin_of(std::size_t round) const { return round * per_round(); }
   std::size_t end_of(std::size_t round) const { return std::min((round + 1) * per_round(), domains()); }
 
@@ -59,10 +60,10 @@ private:
   BoxPosition in_grid(std::size_t round, const BoxPosition& position) const {
     if (round == 0)
       return position;
-    const std::uint32_t half_x = (std::uint32_t{1} << 31) / columns_, half_y = (std::uint32_t{1} << 31) / rows_;
-    const std::uint32_t x = position.x + half_x;
-    const bool beyond = x < half_x; // in the first column, as an image
-    return {x, position.y + half_y + (beyond ? offset_y_ : 0)};
+    const std::uint32_t part = std::uint32_t{1} << (32 - round), shift_x = part / columns_, shift_y = part / rows_;
+    const std::uint32_t x = position.x + shift_x;
+    const bool beyond = x < shift_x; // in the first column, as an image
+    return {x, position.y + shift_y + (beyond ? offset_y_ : 0)};
   }
   // `place`, in the units of a block's side, is farther than `distance` from both ends.
   static bool is_inside(std::uint32_t place, std::uint64_t distance) {

@@ -280,6 +280,7 @@ DriftCosts DriftEngine::costs() const {
   costs.deferred = optimistic_.counts().deferred;
   costs.in_sequence = optimistic_.counts().last_deferred;
   costs.rolled_back = optimistic_.counts().rolled_back;
+  costs.abandoned = optimistic_.counts().abandoned;
   return costs;
 }
 

@@ -26,7 +26,7 @@ struct alignas(64) OptimisticDomain { // no two threads write to one cache line
   LockSchedule lock_schedule;         // for events of a particle of the domain with one of another domain
   std::vector<Event> deferred;        // left to the next round; of those events, the ones of the lower id's domain
   DomainContacts contacts;
-  std::vector<NewPath> unresolved;  // paths that meet a path which the domain may not roll back
+  std::vector<NewPath> unresolved;  // paths that are left to a later round (rollback.hpp)
   std::vector<std::uint32_t> dirty; // particles that changed for the first time here
   std::uint64_t max_partners = 0;
   std::uint64_t rolled_back = 0; // contacts

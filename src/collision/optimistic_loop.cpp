@@ -38,9 +38,9 @@ bool OptimisticLoop::carry_out(const StepContext& context, StepHistory& history,
     else
       run_round(step, round, left_by(round - 1));
     if (std::any_of(state_.domains.begin(), state_.domains.end(), [](const OptimisticDomain& d) { return d.failed; }))
-      return roll_back_all(step);
+      return abandon(step);
   }
-  return order_.sort(state_.domains, state_.cut.end_of(0), context) || roll_back_all(step);
+  return order_.sort(state_.domains, state_.cut.end_of(0), context) || abandon(step);
 }
 
 void OptimisticLoop::begin_step(const Step& step, std::size_t domains) {
@@ -96,15 +96,17 @@ std::vector<Event> OptimisticLoop::own_events(const Step& step, std::size_t roun
 void OptimisticLoop::run_round(const Step& step, std::size_t round, const std::vector<Event>& events) {
   const std::size_t begin = state_.cut.begin_of(round), end = state_.cut.end_of(round);
   assign(step, round, events);
-  (round + 1 == DomainCut::rounds ? counts_.last_deferred : counts_.deferred) += round > 0 ? events.size() : 0;
+  counts_.deferred += round == 1 ? events.size() : 0;
+  counts_.last_deferred += round + 1 == DomainCut::rounds ? events.size() : 0;
+  const std::vector<NewPath> unresolved = take_unresolved(begin);
   parallel_for(
-      end - begin, [&](std::size_t k) { run_domain(step, round, begin + k, events); }, 1);
+      end - begin, [&](std::size_t k) { run_domain(step, round, begin + k, events, unresolved); }, 1);
   for (std::size_t d = begin; d < end; ++d)
     counts_.rolled_back += state_.domains[d].rolled_back;
 }
 
-void OptimisticLoop::run_domain(const Step& step, std::size_t round, std::size_t number,
-                                std::span<const Event> events) {
+void OptimisticLoop::run_domain(const Step& step, std::size_t round, std::size_t number, std::span<const Event> events,
+                                std::span<const NewPath> unresolved) {
   OptimisticDomain& domain = state_.domains[number];
   const DomainScope scope(state_.cut, step.lists, round, number);
   DomainOrbits orbits(step.context, step.history, step.lists, state_, scope);
@@ -112,18 +114,24 @@ void OptimisticLoop::run_domain(const Step& step, std::size_t round, std::size_t
     EventQueue queue;
     queue.assign(own_events(step, round, number, events));
     ContactLoop loop(step.context, orbits, queue);
-    if (scope.is_last()) {
-      std::vector<NewPath> unresolved;
-      for (std::size_t d = 0; d < number; ++d)
-        unresolved.insert(unresolved.end(), state_.domains[d].unresolved.begin(), state_.domains[d].unresolved.end());
-      orbits.resolve(unresolved);
-      loop.predict_again(orbits.reinstated());
-    }
+    orbits.resolve(unresolved);
+    loop.predict_again(orbits.reinstated());
     loop.run();
     domain.max_partners = loop.max_partners();
   } catch (...) {
     domain.failed = true; // the sequential loop will throw it in its order
   }
+}
+
+// Returns the paths that the domains before `end` have left.
+std::vector<NewPath> OptimisticLoop::take_unresolved(std::size_t end) {
+  std::vector<NewPath> unresolved;
+  for (std::size_t d = 0; d < end; ++d) {
+    std::vector<NewPath>& left = state_.domains[d].unresolved;
+    unresolved.insert(unresolved.end(), left.begin(), left.end());
+    left.clear();
+  }
+  return unresolved;
 }
 
 std::vector<Event> OptimisticLoop::left_by(std::size_t round) const {
@@ -136,7 +144,7 @@ std::vector<Event> OptimisticLoop::left_by(std::size_t round) const {
 }
 
 // Restores everything as at the start of the step: the first change of each particle ended the path of then.
-bool OptimisticLoop::roll_back_all(const Step& step) {
+void OptimisticLoop::roll_back_all(const Step& step) {
   step.history.begin_step(step.context.particles.size(), step.context.begin);
   for (std::size_t d = 0; d < state_.domains.size(); ++d) {
     for (std::size_t k = 0; k < state_.log.size(d); ++k)
@@ -145,6 +153,12 @@ bool OptimisticLoop::roll_back_all(const Step& step) {
     state_.log.clear(d);
     state_.domains[d].clear();
   }
+}
+
+// Leaves the contacts to the sequential loop.
+bool OptimisticLoop::abandon(const Step& step) {
+  roll_back_all(step);
+  ++counts_.abandoned;
   return false;
 }
 

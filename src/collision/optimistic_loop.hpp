@@ -5,15 +5,15 @@
 // Ownership: the box is cut into blocks, the domains; each particle belongs to one. Deferral: a domain carries out, in
 // order, the contacts of which it owns both particles and all particles on their lists, which is all that the search
 // after the contact reads. It defers the others, and from then on all events of their two particles (locks). A second
-// round of domains, shifted by half a block, carries out what was deferred; a last round, one domain for the whole box,
-// carries out the rest.
+// round of domains, shifted by half a block, carries out what was deferred, and a third, shifted by a quarter, what the
+// second deferred; a last round, one domain for the whole box, carries out the rest.
 //
 // Rollback (rollback.hpp): contacts of two domains of one round are independent, but a contact that was deferred may
 // precede and change one that was carried out. So each new path of a later round is searched against the paths that
 // ended after it began. Contacts that it contradicts are rolled back, and particles that have an earlier path again are
-// searched again in the same way. A domain of the second round rolls back only what it owns and leaves the rest to the
-// last. When nothing is left, then by induction over the events every pending contact has been found and none is made
-// up: the result is the sequential history.
+// searched again in the same way. A domain rolls back only what it owns and leaves the rest to a later round, which
+// begins with that. When nothing is left, then by induction over the events every pending contact has been found and
+// none is made up: the result is the sequential history.
 //
 // Invariants: in a round a domain changes only what it owns, and reads only what it owns and lists, which nothing
 // changes but the last round; changes of a particle follow each other in time; an event count never returns to an old
@@ -45,6 +45,7 @@ public:
     std::uint64_t deferred = 0;      ///< events left to the second round
     std::uint64_t last_deferred = 0; ///< events left to the last round
     std::uint64_t rolled_back = 0;   ///< contacts
+    std::uint64_t abandoned = 0;     ///< calls that were left to the sequential loop
   };
 
   /// Carries out all contacts that follow from the first ones of a step, in so many domains per round. Returns false if
@@ -98,9 +99,12 @@ private:
   void assign(const Step& step, std::size_t round, std::span<const Event> events);
   void run_round(const Step& step, std::size_t round, const std::vector<Event>& events);
   std::vector<Event> own_events(const Step& step, std::size_t round, std::size_t domain, std::span<const Event> events);
-  void run_domain(const Step& step, std::size_t round, std::size_t domain, std::span<const Event> events);
+  void run_domain(const Step& step, std::size_t round, std::size_t domain, std::span<const Event> events,
+                  std::span<const NewPath> unresolved);
+  std::vector<NewPath> take_unresolved(std::size_t end);
   std::vector<Event> left_by(std::size_t round) const;
-  bool roll_back_all(const Step& step);
+  void roll_back_all(const Step& step);
+  bool abandon(const Step& step);
 
   const DomainContacts& log_of(std::size_t k) const { return state_.domains[order_[k].domain].contacts; }
 

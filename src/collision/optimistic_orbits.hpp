@@ -5,8 +5,10 @@
 #include "contact_loop.hpp"
 #include "rollback.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <iterator>
 #include <span>
 #include <vector>
 
@@ -87,8 +89,13 @@ public:
     return true;
   }
 
-  /// Rolls back what contradicts the paths that earlier rounds have left.
-  void resolve(std::span<const NewPath> paths) { rollback_.resolve(paths); }
+  /// Rolls back what contradicts those of the paths that earlier rounds have left which belong to this domain.
+  void resolve(std::span<const NewPath> paths) {
+    std::vector<NewPath> own;
+    std::copy_if(paths.begin(), paths.end(), std::back_inserter(own),
+                 [&](const NewPath& path) { return scope_.owns(path.particle); });
+    rollback_.resolve(own);
+  }
   std::span<const std::uint32_t> reinstated() const { return rollback_.reinstated(); }
 
   bool may_repredict(std::uint32_t i) const { return lists_.has_many(i); }

@@ -33,17 +33,20 @@ public:
       : step_(step), history_(history), lists_(lists), state_(state), scope_(scope), locks_(locks) {}
 
   /// Rolls back all contacts that ended a path which one of the new paths meets, and what contradicts the paths that
-  /// hold again because of that. A path that meets one beyond the domain's scope is left to the last round.
+  /// hold again because of that. A path is left to a later round if its list, or what must be rolled back, is beyond
+  /// the domain's scope.
   void resolve(std::span<const NewPath> paths) {
     paths_.assign(paths.begin(), paths.end());
     reinstated_.clear();
     for (std::size_t k = 0; k < paths_.size(); ++k) {
       const NewPath path = paths_[k];
+      if (!scope_.encloses(path.particle)) {
+        leave(path);
+        continue;
+      }
       for (const std::uint32_t j : lists_.list(path.particle))
-        if (const ChangeNumber number = first_met(path, j); number && !roll_back(number)) {
-          domain().unresolved.push_back(path);
-          locks_.lock(path.particle);
-        }
+        if (const ChangeNumber number = first_met(path, j); number && !roll_back(number))
+          leave(path);
     }
     paths_.clear();
   }
@@ -54,6 +57,12 @@ public:
 private:
   OptimisticDomain& domain() { return state_.domains[scope_.domain()]; }
   bool owns_around(std::uint32_t i) const { return scope_.owns(i) && scope_.encloses(i); }
+
+  // Leaves a path, and all events of its particle, to a later round.
+  void leave(const NewPath& path) {
+    domain().unresolved.push_back(path);
+    locks_.lock(path.particle);
+  }
 
   // Returns the first change of j that ended a path which the new one meets, or 0. Changes of this domain are in order.
   // All paths stay within their skins, so the list has all that may meet.

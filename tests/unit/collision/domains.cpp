@@ -8,6 +8,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 
 namespace domains_test {
@@ -28,9 +29,12 @@ BoxPosition displaced(const BoxPosition& from, std::int64_t x, std::int64_t y, s
 TEST_CASE(
     "in each round every position has one owner, and blocks reach as far as is_inside() says, through all edges") {
   RandomStream random(1, RandomPurpose::sample, 0);
+  constexpr std::size_t last = DomainCut::rounds - 1, most = DomainCut::max_domains;
   const auto position = [&] { return static_cast<std::uint32_t>(random.uniform() * full_turn); };
+  std::array<std::size_t, last> first_inside{}; // places that no earlier round has inside
   for (const double x_over_y : {0.1, 1.0, 3.0})
-    for (const std::size_t domains : {1, 2, 3, 8, 127, 2047}) {
+    for (const std::size_t domains :
+         {std::size_t{1}, std::size_t{2}, std::size_t{3}, std::size_t{8}, std::size_t{127}, most}) {
       CAPTURE(domains);
       CAPTURE(x_over_y);
       const std::uint32_t offset_y = position();
@@ -39,39 +43,46 @@ TEST_CASE(
       const std::size_t per_round = cut.end_of(0);
       CHECK(per_round <= domains);
       CHECK(4 * per_round > domains);
-      CHECK(cut.end_of(0) == cut.begin_of(1));
-      CHECK(cut.end_of(1) == 2 * per_round);
-      CHECK(cut.end_of(2) == cut.domains());
-      CHECK(cut.domains() == 2 * per_round + 1);
-      std::vector<std::size_t> counts(2 * per_round);
-      std::size_t inside = 0, only_second = 0;
+      for (std::size_t round = 0; round < last; ++round) {
+        CHECK(cut.end_of(round) == (round + 1) * per_round);
+        CHECK(cut.begin_of(round + 1) == cut.end_of(round));
+      }
+      CHECK(cut.end_of(last) == cut.domains());
+      CHECK(cut.domains() == last * per_round + 1);
+      std::vector<std::size_t> counts(last * per_round);
+      std::size_t inside = 0;
       const double reach = 0.1 * full_turn / static_cast<double>(per_round);
       for (int k = 0; k < 20000; ++k) {
         const BoxPosition place{position(), position()};
         const BoxDistance distance{static_cast<std::uint64_t>(reach * random.uniform()),
                                    static_cast<std::uint64_t>(reach * random.uniform())};
-        for (std::size_t round = 0; round < 2; ++round) {
+        bool was_inside = false;
+        for (std::size_t round = 0; round < last; ++round) {
           const std::size_t owner = cut.owner(round, place);
           REQUIRE(owner < per_round);
           ++counts[cut.begin_of(round) + owner];
           if (!cut.is_inside(round, place, distance))
             continue;
           ++inside;
-          only_second += round == 1 && !cut.is_inside(0, place, distance);
+          first_inside[round] += was_inside ? 0 : 1;
+          was_inside = true;
           for (const int side_x : {-1, 0, 1})
             for (const int side_y : {-1, 0, 1})
               REQUIRE(cut.owner(round, displaced(place, side_x * static_cast<std::int64_t>(distance.x),
                                                  side_y * static_cast<std::int64_t>(distance.y), offset_y)) == owner);
         }
-        CHECK(cut.owner(2, place) == 0);
-        CHECK(cut.is_inside(2, place, distance));
+        CHECK(cut.owner(last, place) == 0);
+        CHECK(cut.is_inside(last, place, distance));
+        if (place.x < 0.4 * full_turn) // no image in any round
+          CHECK(was_inside);
       }
-      CHECK(inside > 20000); // of 40000
-      CHECK(only_second > 0);
+      CHECK(inside > 30000); // of 60000
       const double mean = 20000.0 / static_cast<double>(per_round);
       for (const std::size_t count : counts) // blocks are equal: within five standard errors
         CHECK(std::fabs(static_cast<double>(count) - mean) < 5.0 * std::sqrt(mean) + 5.0);
     }
+  for (const std::size_t places : first_inside)
+    CHECK(places > 0);
 }
 
 TEST_CASE("a change log restores orbits and spins, the last change first") {

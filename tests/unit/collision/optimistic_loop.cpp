@@ -51,7 +51,7 @@ End drift(const Patch& patch, const CollisionSettings& settings, double step, in
 
 TEST_CASE("domains carry out, defer and roll back what the sequence carries out") {
   const int before = threads();
-  std::uint64_t deferred = 0, in_sequence = 0, rolled_back = 0, contacts = 0;
+  std::uint64_t deferred = 0, in_sequence = 0, rolled_back = 0, contacts = 0, abandoned = 0, steps = 0;
   for (std::uint64_t seed = 1; seed <= (test::sanitized ? 3 : 6); ++seed) {
     test::Scenario s;
     s.count = 1500;
@@ -78,15 +78,19 @@ TEST_CASE("domains carry out, defer and roll back what the sequence carries out"
         deferred += end.costs.deferred;
         in_sequence += end.costs.in_sequence;
         rolled_back += end.costs.rolled_back;
+        abandoned += end.costs.abandoned;
+        steps += 10;
       }
   }
   set_threads(before);
   MESSAGE(contacts << " contacts; events deferred " << deferred << ", left to the last round " << in_sequence
-                   << "; contacts rolled back " << rolled_back);
+                   << "; contacts rolled back " << rolled_back << "; of " << steps << " steps left to the sequence "
+                   << abandoned);
   CHECK(contacts > 20000);
   CHECK(deferred > 1000);
   CHECK(in_sequence > 100);
   CHECK(rolled_back > 100);
+  CHECK(abandoned == 0);
 }
 
 TEST_CASE("what domains did is the same for any number of threads") {
