@@ -1,6 +1,6 @@
-// The division of the box into domains of contacts: each round cuts it into a grid of blocks. Those of the second round
-// are shifted by half a block in both directions, and those of the third by a quarter, so the places where edges of the
-// first two cross are in their middle parts. The domain of the last round is the whole box.
+// The division of the box into domains of contacts: each round cuts it into a grid of blocks. The second
+// round's blocks are shifted by half a block in both directions. The third's are shifted by a quarter, so the places
+// where edges of the first two cross are in their middle parts. The domain of the last round is the whole box.
 //
 // Invariant: in each round every position belongs to exactly one domain. Across the x edge of the box, shifted blocks
 // hold images, which the shear has moved along the box.

@@ -89,7 +89,7 @@ public:
     return true;
   }
 
-  /// Rolls back what contradicts those of the paths that earlier rounds have left which belong to this domain.
+  /// Of the paths that earlier rounds have left, takes up the ones of this domain's particles.
   void resolve(std::span<const NewPath> paths) {
     std::vector<NewPath> own;
     std::copy_if(paths.begin(), paths.end(), std::back_inserter(own),
