@@ -24,7 +24,7 @@ void OptimisticDomain::clear() {
 
 std::size_t OptimisticDomain::bytes() const {
   return deferred.capacity() * sizeof(Event) + lock_schedule.bytes() + contacts.bytes() +
-         dirty.capacity() * sizeof(std::uint32_t);
+         unresolved.capacity() * sizeof(NewPath) + dirty.capacity() * sizeof(std::uint32_t);
 }
 
 bool OptimisticLoop::carry_out(const StepContext& context, StepHistory& history, NeighbourLists& lists,

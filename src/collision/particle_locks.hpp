@@ -1,5 +1,5 @@
-// Locks of a parallel step: a domain locks a particle of its own when an event of the particle is left to a later
-// round. From then on it defers every event of that particle.
+// Locks of a parallel step: a domain locks a particle of its own when an event or a path of the particle is left
+// to a later round. From then on it defers every event of that particle.
 //
 // Invariant: between rounds no particle is locked.
 #pragma once

@@ -9,6 +9,7 @@
 #include "step_context.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -40,13 +41,14 @@ public:
     reinstated_.clear();
     for (std::size_t k = 0; k < paths_.size(); ++k) {
       const NewPath path = paths_[k];
-      if (!scope_.encloses(path.particle)) {
+      assert(scope_.owns(path.particle));
+      bool resolved = scope_.encloses(path.particle); // else other domains may change what first_met() reads
+      if (resolved)
+        for (const std::uint32_t j : lists_.list(path.particle))
+          if (const ChangeNumber number = first_met(path, j))
+            resolved &= roll_back(number);
+      if (!resolved)
         leave(path);
-        continue;
-      }
-      for (const std::uint32_t j : lists_.list(path.particle))
-        if (const ChangeNumber number = first_met(path, j); number && !roll_back(number))
-          leave(path);
     }
     paths_.clear();
   }

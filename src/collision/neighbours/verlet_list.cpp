@@ -7,13 +7,6 @@
 #include <utility>
 
 namespace keeler::collision {
-namespace {
-
-bool contains(std::span<const std::uint32_t> list, std::uint32_t entry) {
-  return std::find(list.begin(), list.end(), entry) != list.end();
-}
-
-} // namespace
 
 void VerletList::check_length(std::uint64_t entries) const {
   if (entries > std::uint64_t{1} << 31)
@@ -23,23 +16,17 @@ void VerletList::check_length(std::uint64_t entries) const {
 
 void VerletList::replace(std::uint32_t i, std::span<const std::uint32_t> found) {
   assert(i < ranges_.size());
-  // Most neighbours stay, and their lists, which are elsewhere in memory, need no change.
   for (const std::uint32_t j : list(i))
-    if (!contains(found, j))
-      erase(j, i);
-  std::vector<std::uint32_t> added;
-  for (const std::uint32_t j : found)
-    if (j != i && !contains(list(i), j))
-      added.push_back(j);
-  for (const std::uint32_t j : added)
-    append(j, i);
+    erase(j, i);
+  ranges_[i].count = 0;
+  if (ranges_[i].room < found.size())
+    move_to_end(ranges_[i], static_cast<std::uint32_t>(found.size()));
   Range& range = ranges_[i];
-  range.count = 0;
-  if (range.room < found.size())
-    move_to_end(range, static_cast<std::uint32_t>(found.size()));
   for (const std::uint32_t j : found)
-    if (j != i)
+    if (j != i) {
       entries_[range.begin + range.count++] = j;
+      append(j, i);
+    }
 }
 
 void VerletList::erase(std::uint32_t i, std::uint32_t entry) {
