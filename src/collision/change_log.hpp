@@ -30,8 +30,7 @@ struct Change {
 class ChangeLog {
 public:
   static constexpr std::uint32_t max_changes = 1u << 20; // per domain
-  static_assert(((DomainCut::rounds - 1) * DomainCut::max_domains + 1) * std::uint64_t{max_changes} < std::uint64_t{1}
-                                                                                                          << 32);
+  static_assert(DomainCut::max_in_all * std::uint64_t{max_changes} < std::uint64_t{1} << 32);
 
   static ChangeNumber number_of(std::size_t domain, std::size_t index) {
     return static_cast<ChangeNumber>(domain * max_changes + index + 1);

@@ -26,7 +26,7 @@ struct DriftCosts {
   std::uint64_t deferred = 0;      ///< events that the first round of domains left to the second
   std::uint64_t in_sequence = 0;   ///< events left to the last round, which is one domain
   std::uint64_t rolled_back = 0;   ///< contacts that a deferred one contradicted
-  std::uint64_t abandoned = 0;     ///< steps that domains left to the sequential loop
+  std::uint64_t abandoned = 0;     ///< times that domains left a step to the sequential loop
   std::uint64_t widest_list = 0;   ///< largest number of partners of one particle within one search
 
   // distributed steps

@@ -1,6 +1,6 @@
-// The division of the box into domains of contacts: each round cuts it into a grid of blocks. The second
-// round's blocks are shifted by half a block in both directions. The third's are shifted by a quarter, so the places
-// where edges of the first two cross are in their middle parts. The domain of the last round is the whole box.
+// The division of the box into domains of contacts: each round cuts it into a grid of blocks. The second round's
+// blocks are shifted by half a block in both directions. The third's are shifted by a quarter, so the places where
+// edges of the first two cross are in their middle parts. The domain of the last round is the whole box.
 //
 // Invariant: in each round every position belongs to exactly one domain. Across the x edge of the box, shifted blocks
 // hold images, which the shear has moved along the box.
@@ -21,6 +21,8 @@ public:
   static constexpr std::size_t rounds = 4;
   /// Largest number of domains per round.
   static constexpr std::size_t max_domains = 1364;
+  /// The same of all rounds.
+  static constexpr std::size_t max_in_all = (rounds - 1) * max_domains + 1;
 
   /// Cuts the box into at most `domains` blocks per round, nearly square in a box whose sides have this ratio. Images
   /// across the outer x edge are moved by `offset_y` along the box. Precondition: 0 < domains <= max_domains.

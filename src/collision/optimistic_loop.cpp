@@ -155,7 +155,7 @@ void OptimisticLoop::roll_back_all(const Step& step) {
   }
 }
 
-// Leaves the contacts to the sequential loop.
+// Leaves all contacts of the step to the sequential loop: returns false.
 bool OptimisticLoop::abandon(const Step& step) {
   roll_back_all(step);
   ++counts_.abandoned;

@@ -45,7 +45,7 @@ public:
     std::uint64_t deferred = 0;      ///< events left to the second round
     std::uint64_t last_deferred = 0; ///< events left to the last round
     std::uint64_t rolled_back = 0;   ///< contacts
-    std::uint64_t abandoned = 0;     ///< calls that were left to the sequential loop
+    std::uint64_t abandoned = 0;     ///< calls that returned false
   };
 
   /// Carries out all contacts that follow from the first ones of a step, in so many domains per round. Returns false if

@@ -93,6 +93,27 @@ TEST_CASE("domains carry out, defer and roll back what the sequence carries out"
   CHECK(abandoned == 0);
 }
 
+TEST_CASE("paths that a domain leaves are taken up by later rounds") {
+  const int before = threads();
+  test::Scenario s;
+  s.count = 9000; // of a small patch domains leave none in most steps
+  s.filling = 0.35;
+  s.step = two_pi * 2e-2;
+  const Patch patch = test::make_patch(s, 1);
+  set_threads(1);
+  const End expected = drift(patch, test::settings_of(s), s.step, 4, 1);
+  for (const std::size_t domains : {9, 40, 200}) {
+    CAPTURE(domains);
+    set_threads(3);
+    const End end = drift(patch, test::settings_of(s), s.step, 4, domains);
+    CHECK(test::same_bits(end.particles, expected.particles));
+    CHECK(test::same_bits(end.tally, expected.tally));
+    CHECK(end.costs.rolled_back > 0);
+    CHECK(end.costs.abandoned == 0);
+  }
+  set_threads(before);
+}
+
 TEST_CASE("what domains did is the same for any number of threads") {
   const int before = threads();
   test::Scenario s;

@@ -51,7 +51,7 @@ Faults faults_of_arrays(void (*set_policy)()) {
 #ifdef __GLIBC__
 TEST_CASE("an array in kept memory costs no page faults, one in returned memory as many as before") {
   if (test::sanitized || std::getenv("GLIBC_TUNABLES") || std::getenv("MALLOC_MMAP_THRESHOLD_") ||
-      std::getenv("MALLOC_MMAP_MAX_"))
+      std::getenv("MALLOC_MMAP_MAX_") || std::getenv("MALLOC_TRIM_THRESHOLD_") || std::getenv("MALLOC_TOP_PAD_"))
     return; // another allocator, or another policy
   const Faults kept = faults_of_arrays(keep_freed_memory), returned = faults_of_arrays(return_freed_memory);
   CHECK(kept.first > 20); // of 2 MB at most
