@@ -2,6 +2,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/format.hpp>
+#include <keeler/core/large_blocks.hpp>
 
 #include <fmt/format.h>
 
@@ -120,11 +121,12 @@ void keep_freed_memory() {
 
 void return_freed_memory() {
 #ifdef __GLIBC__
-  constexpr int longest_in_heap = 4 << 20, longest_free_end = 32 << 20; // bytes
+  constexpr int longest_in_heap = 4 << 20, longest_free_end = 4 << 20; // bytes
   if (user_sets_allocator())
     return;
   mallopt(M_MMAP_THRESHOLD, longest_in_heap);
   mallopt(M_TRIM_THRESHOLD, longest_free_end);
+  reuse_large_blocks();
 #endif
 }
 

@@ -27,8 +27,8 @@ std::size_t affordable_size(double count, double bytes_each, const std::string& 
 /// Does nothing if the environment sets GLIBC_TUNABLES or a variable of mallopt(3), or without the GNU C library.
 void keep_freed_memory();
 
-/// Makes it return freed blocks to the system early, for the rest of this process; else as keep_freed_memory(). A
-/// rank's arrays change their size all the time, and leave gaps in memory that is kept (docs/dev/ranks.md).
+/// Makes it return freed blocks to the system early, and the program's operator new use large ones again
+/// (large_blocks.hpp); else as keep_freed_memory(), which keeps the gaps between a rank's arrays (docs/dev/ranks.md).
 void return_freed_memory();
 
 /// Empties a vector and frees its memory, which `v = {}` keeps: that assigns an empty list.

@@ -1,0 +1,128 @@
+#include <keeler/core/large_blocks.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <iterator>
+#include <utility>
+
+#include <sys/mman.h>
+
+namespace keeler {
+namespace {
+
+std::size_t whole_pages(std::size_t bytes) {
+  return (bytes + LargeBlocks::page - 1) / LargeBlocks::page * LargeBlocks::page;
+}
+
+bool is_shorter(const std::pair<std::byte* const, std::size_t>& a, const std::pair<std::byte* const, std::size_t>& b) {
+  return a.second < b.second;
+}
+
+std::atomic<bool> are_reused = false;
+
+} // namespace
+
+LargeBlocks::~LargeBlocks() {
+  for (const Ranges* ranges : {&taken_, &free_})
+    for (const auto& [begin, bytes] : *ranges)
+      munmap(begin, bytes);
+}
+
+void* LargeBlocks::take(std::size_t bytes) {
+  assert(bytes > 0);
+  bytes = whole_pages(bytes);
+  auto shortest = free_.end(); // of those that are long enough, so that the longest ones stay whole
+  for (auto range = free_.begin(); range != free_.end(); ++range)
+    if (range->second >= bytes && (shortest == free_.end() || range->second < shortest->second))
+      shortest = range;
+  std::byte* const block = shortest != free_.end() ? cut_from(shortest, bytes) : extend_largest(bytes);
+  if (!block)
+    return nullptr;
+  taken_.emplace(block, bytes);
+  used_ += bytes;
+  most_used_ = std::max(most_used_, used_);
+  release_excess();
+  return block;
+}
+
+bool LargeBlocks::give_back(void* block) {
+  const auto taken = taken_.find(static_cast<std::byte*>(block));
+  if (taken == taken_.end())
+    return false;
+  used_ -= taken->second;
+  keep(taken_.extract(taken));
+  release_excess();
+  return true;
+}
+
+std::byte* LargeBlocks::cut_from(Ranges::iterator range, std::size_t bytes) {
+  const auto [begin, all] = *range;
+  free_.erase(range);
+  if (all > bytes)
+    free_.emplace(begin + bytes, all - bytes);
+  kept_ -= bytes;
+  return begin;
+}
+
+std::byte* LargeBlocks::fetch(std::size_t bytes) {
+  void* const block = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (block == MAP_FAILED)
+    return nullptr;
+  fetched_ += bytes;
+  return static_cast<std::byte*>(block);
+}
+
+// Moves the pages of the longest free range, which is too short, to an address where more can follow them.
+std::byte* LargeBlocks::extend_largest(std::size_t bytes) {
+  const auto longest = std::max_element(free_.begin(), free_.end(), is_shorter);
+  if (longest == free_.end())
+    return fetch(bytes);
+  const auto [begin, had] = *longest;
+  assert(had < bytes);
+  void* const block = mremap(begin, had, bytes, MREMAP_MAYMOVE);
+  if (block == MAP_FAILED) // the range has pages of two mappings
+    return fetch(bytes);
+  free_.erase(longest);
+  kept_ -= had;
+  fetched_ += bytes - had;
+  return static_cast<std::byte*>(block);
+}
+
+// Allocates nothing: memory is freed where there is none.
+void LargeBlocks::keep(Ranges::node_type block) {
+  kept_ += block.mapped();
+  const auto range = free_.insert(std::move(block)).position;
+  if (const auto next = std::next(range); next != free_.end() && range->first + range->second == next->first) {
+    range->second += next->second;
+    free_.erase(next);
+  }
+  if (range == free_.begin())
+    return;
+  if (const auto previous = std::prev(range); previous->first + previous->second == range->first) {
+    previous->second += range->second;
+    free_.erase(range);
+  }
+}
+
+void LargeBlocks::release_excess() {
+  while (used_ + kept_ > most_used_) {
+    const auto range = std::min_element(free_.begin(), free_.end(), is_shorter);
+    const std::size_t bytes = std::min(range->second, used_ + kept_ - most_used_);
+    range->second -= bytes;
+    kept_ -= bytes;
+    munmap(range->first + range->second, bytes);
+    if (range->second == 0)
+      free_.erase(range);
+  }
+}
+
+void reuse_large_blocks() {
+  are_reused.store(true, std::memory_order_relaxed);
+}
+
+bool large_blocks_are_reused() {
+  return are_reused.load(std::memory_order_relaxed);
+}
+
+} // namespace keeler
