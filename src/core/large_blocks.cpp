@@ -32,7 +32,7 @@ LargeBlocks::~LargeBlocks() {
 void* LargeBlocks::take(std::size_t bytes) {
   assert(bytes > 0);
   bytes = whole_pages(bytes);
-  auto shortest = free_.end(); // of those that are long enough, so that the longest ones stay whole
+  auto shortest = free_.end(); // of the ranges that are long enough, so that longer ones stay whole
   for (auto range = free_.begin(); range != free_.end(); ++range)
     if (range->second >= bytes && (shortest == free_.end() || range->second < shortest->second))
       shortest = range;
