@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <mutex>
 #include <new>
 
@@ -12,6 +13,7 @@ namespace {
 
 constexpr std::size_t large_block = std::size_t{1} << 16; // bytes, at least
 
+// A child of fork(2) may only allocate if no other thread of its parent did at that moment (io/child_process.cpp).
 struct SharedBlocks {
   std::mutex mutex;
   keeler::LargeBlocks blocks;
@@ -26,6 +28,8 @@ SharedBlocks& shared_blocks() {
 
 // Returns null if there is no memory.
 void* allocate(std::size_t bytes, std::size_t alignment) {
+  if (bytes > static_cast<std::size_t>(std::numeric_limits<std::ptrdiff_t>::max()))
+    return nullptr;
   if (bytes >= large_block && alignment <= keeler::LargeBlocks::page && keeler::large_blocks_are_reused()) {
     SharedBlocks& shared = shared_blocks();
     const std::lock_guard lock(shared.mutex);

@@ -4,9 +4,11 @@
 #include <atomic>
 #include <cassert>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include <sys/mman.h>
+#include <unistd.h>
 
 namespace keeler {
 namespace {
@@ -31,19 +33,38 @@ LargeBlocks::~LargeBlocks() {
 
 void* LargeBlocks::take(std::size_t bytes) {
   assert(bytes > 0);
+  if (bytes > static_cast<std::size_t>(std::numeric_limits<std::ptrdiff_t>::max()))
+    return nullptr;
   bytes = whole_pages(bytes);
+  Ranges row; // made first: afterwards nothing needs memory
+  try {
+    row.emplace(nullptr, bytes);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+  std::byte* const block = find(bytes);
+  if (!block)
+    return nullptr;
+  auto taken = row.extract(row.begin());
+  taken.key() = block;
+  taken_.insert(std::move(taken));
+  used_ += bytes;
+  most_used_ = std::max(most_used_, used_);
+  release_excess(most_used_ - used_);
+  return block;
+}
+
+std::byte* LargeBlocks::find(std::size_t bytes) {
   auto shortest = free_.end(); // of the ranges that are long enough, so that longer ones stay whole
   for (auto range = free_.begin(); range != free_.end(); ++range)
     if (range->second >= bytes && (shortest == free_.end() || range->second < shortest->second))
       shortest = range;
-  std::byte* const block = shortest != free_.end() ? cut_from(shortest, bytes) : extend_largest(bytes);
-  if (!block)
-    return nullptr;
-  taken_.emplace(block, bytes);
-  used_ += bytes;
-  most_used_ = std::max(most_used_, used_);
-  release_excess();
-  return block;
+  if (shortest != free_.end())
+    return cut_from(shortest, bytes);
+  if (std::byte* const block = extend_longest(bytes))
+    return block;
+  release_excess(0);
+  return fetch(bytes);
 }
 
 bool LargeBlocks::give_back(void* block) {
@@ -52,15 +73,16 @@ bool LargeBlocks::give_back(void* block) {
     return false;
   used_ -= taken->second;
   keep(taken_.extract(taken));
-  release_excess();
   return true;
 }
 
 std::byte* LargeBlocks::cut_from(Ranges::iterator range, std::size_t bytes) {
-  const auto [begin, all] = *range;
-  free_.erase(range);
-  if (all > bytes)
-    free_.emplace(begin + bytes, all - bytes);
+  auto rest = free_.extract(range);
+  std::byte* const begin = rest.key();
+  rest.key() += bytes;
+  rest.mapped() -= bytes;
+  if (rest.mapped() > 0)
+    free_.insert(std::move(rest));
   kept_ -= bytes;
   return begin;
 }
@@ -73,15 +95,15 @@ std::byte* LargeBlocks::fetch(std::size_t bytes) {
   return static_cast<std::byte*>(block);
 }
 
-// Moves the pages of the longest free range, which is too short, to an address where more can follow them.
-std::byte* LargeBlocks::extend_largest(std::size_t bytes) {
+// Extends the longest free range, which is too short; its pages move to another address if need be.
+std::byte* LargeBlocks::extend_longest(std::size_t bytes) {
   const auto longest = std::max_element(free_.begin(), free_.end(), is_shorter);
   if (longest == free_.end())
     return fetch(bytes);
   const auto [begin, had] = *longest;
   assert(had < bytes);
   void* const block = mremap(begin, had, bytes, MREMAP_MAYMOVE);
-  if (block == MAP_FAILED) // the range has pages of two mappings
+  if (block == MAP_FAILED) // for example, the range has pages of two mappings
     return fetch(bytes);
   free_.erase(longest);
   kept_ -= had;
@@ -89,7 +111,7 @@ std::byte* LargeBlocks::extend_largest(std::size_t bytes) {
   return static_cast<std::byte*>(block);
 }
 
-// Allocates nothing: memory is freed where there is none.
+// Allocates nothing, so that freeing works when memory is exhausted.
 void LargeBlocks::keep(Ranges::node_type block) {
   kept_ += block.mapped();
   const auto range = free_.insert(std::move(block)).position;
@@ -105,10 +127,11 @@ void LargeBlocks::keep(Ranges::node_type block) {
   }
 }
 
-void LargeBlocks::release_excess() {
-  while (used_ + kept_ > most_used_) {
+// Returns what is kept beyond a number of bytes to the system, the shortest ranges first.
+void LargeBlocks::release_excess(std::size_t to_keep) {
+  while (kept_ > to_keep) {
     const auto range = std::min_element(free_.begin(), free_.end(), is_shorter);
-    const std::size_t bytes = std::min(range->second, used_ + kept_ - most_used_);
+    const std::size_t bytes = std::min(range->second, kept_ - to_keep);
     range->second -= bytes;
     kept_ -= bytes;
     munmap(range->first + range->second, bytes);
@@ -118,7 +141,8 @@ void LargeBlocks::release_excess() {
 }
 
 void reuse_large_blocks() {
-  are_reused.store(true, std::memory_order_relaxed);
+  const bool has_such_pages = sysconf(_SC_PAGESIZE) == static_cast<long>(LargeBlocks::page);
+  are_reused.store(has_such_pages, std::memory_order_relaxed);
 }
 
 bool large_blocks_are_reused() {

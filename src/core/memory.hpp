@@ -28,7 +28,7 @@ std::size_t affordable_size(double count, double bytes_each, const std::string& 
 void keep_freed_memory();
 
 /// Makes it return freed blocks to the system early, and the program's operator new use large ones again
-/// (large_blocks.hpp); else as keep_freed_memory(), which keeps the gaps between a rank's arrays (docs/dev/ranks.md).
+/// (large_blocks.hpp). Where keep_freed_memory() does nothing this does nothing. Why: docs/dev/ranks.md.
 void return_freed_memory();
 
 /// Empties a vector and frees its memory, which `v = {}` keeps: that assigns an empty list.

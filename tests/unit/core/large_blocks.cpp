@@ -6,9 +6,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <fstream>
+#include <limits>
 #include <vector>
+
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace large_blocks_test {
 
@@ -22,7 +30,7 @@ struct Block {
   std::byte mark;
 };
 
-// Writes a mark into the first and last byte of each page, as into the last of the block.
+// Writes a mark into the first byte of each page and the last byte of the block.
 void fill(const Block& block) {
   for (std::size_t at = 0; at < block.bytes; at += page)
     block.begin[at] = block.mark;
@@ -76,39 +84,78 @@ TEST_CASE("blocks keep what is written into them, and no more pages than were on
     CHECK(is_whole(block));
 }
 
-TEST_CASE("arrays of changing sizes, one set after the other, need no new pages") {
+// Takes blocks of these numbers of pages, one after the other, and writes into all of them.
+template<std::size_t n> std::array<void*, n> take_all(LargeBlocks& blocks, const std::array<std::size_t, n>& pages) {
+  std::array<void*, n> taken{};
+  for (std::size_t k = 0; k < n; ++k)
+    std::memset(taken[k] = blocks.take(pages[k] * page), static_cast<int>(k + 1), pages[k] * page);
+  return taken;
+}
+
+TEST_CASE("sets of arrays, one after the other, need no new pages where each fits into what the last ones left") {
   LargeBlocks blocks;
-  const auto use = [&blocks](const std::array<std::size_t, 3>& pages) {
-    std::array<void*, 3> set{};
-    for (std::size_t k = 0; k < set.size(); ++k)
-      std::memset(set[k] = blocks.take(pages[k] * page), 1, pages[k] * page);
-    for (void* const block : set)
+  for (const std::array<std::size_t, 3>& pages :
+       {std::array<std::size_t, 3>{500, 300, 200}, {480, 290, 200}, {500, 300, 200}, {450, 300, 120}, {500, 300, 200}})
+    for (void* const block : take_all<3>(blocks, pages))
       CHECK(blocks.give_back(block));
-  };
-  use({500, 300, 200}); // gravity's, for example
   CHECK(blocks.fetched() == 1000 * page);
   CHECK(blocks.kept() == 1000 * page);
-  for (const std::size_t more : {0, 7, 20, 33}) {
-    use({100 + more, 600 - more, 150}); // the drift's
-    use({480, 310 + more, 190 - more});
-  }
-  CHECK(blocks.fetched() < 1500 * page);
   CHECK(blocks.most_used() == 1000 * page);
 }
 
-TEST_CASE("a block longer than all free ranges has the pages of the longest") {
+TEST_CASE("a short block leaves a longer free range whole, and a block longer than all extends the longest") {
   LargeBlocks blocks;
-  void* const first = blocks.take(100 * page);
-  std::memset(first, 7, 100 * page);
-  void* const held = blocks.take(page);
-  CHECK(blocks.give_back(first));
-  auto* const longer = static_cast<std::byte*>(blocks.take(140 * page));
-  CHECK(blocks.fetched() == 141 * page);
-  CHECK(blocks.kept() == 0);
-  CHECK(std::all_of(longer, longer + 100 * page, [](std::byte b) { return b == std::byte{7}; }));
-  CHECK(std::all_of(longer + 100 * page, longer + 140 * page, [](std::byte b) { return b == std::byte{0}; }));
-  CHECK(blocks.give_back(longer));
-  CHECK(blocks.give_back(held));
+  CHECK(blocks.give_back(blocks.take(152 * page)));
+  const auto taken =
+      take_all<5>(blocks, {10, 1, 100, 1, 40}); // one after the other: single pages keep free ranges apart
+  for (const std::size_t k : {0, 2, 4})
+    CHECK(blocks.give_back(taken[k]));
+  void* const short_one = blocks.take(10 * page);
+  void* const long_one = blocks.take(100 * page);
+  CHECK(blocks.fetched() == 152 * page);
+  CHECK(blocks.give_back(short_one));
+  CHECK(blocks.give_back(long_one));
+
+  auto* const longest = static_cast<std::byte*>(blocks.take(140 * page));
+  CHECK(blocks.fetched() == (152 + 40) * page);
+  CHECK(std::all_of(longest, longest + 100 * page, [](std::byte b) { return b != std::byte{0}; }));
+  CHECK(std::all_of(longest + 100 * page, longest + 140 * page, [](std::byte b) { return b == std::byte{0}; }));
+
+  // 142 of 152 pages are in use, so 10 of the 50 others may stay: the shortest range goes first, and then a part
+  CHECK(blocks.kept() == 10 * page);
+  unsigned char in_memory = 0;
+  CHECK(mincore(taken[0], page, &in_memory) != 0);
+  CHECK(errno == ENOMEM);
+  CHECK(mincore(taken[4], page, &in_memory) == 0);
+}
+
+TEST_CASE("what is kept goes to the system where that makes room") {
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    LargeBlocks blocks;
+    constexpr std::size_t piece = std::size_t{50} << 20; // bytes
+    void* const barrier = blocks.take(page);
+    std::array<void*, 8> pieces{};
+    std::array<void*, 8> barriers{};
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+      pieces[k] = blocks.take(piece);
+      barriers[k] = blocks.take(page);
+    }
+    for (void* const block : pieces)
+      blocks.give_back(block);
+    std::ifstream sizes("/proc/self/statm");
+    rlim_t pages = 0;
+    sizes >> pages;
+    const rlim_t bytes = pages * page + piece;
+    const rlimit limit{bytes, bytes};
+    const bool is_limited = setrlimit(RLIMIT_AS, &limit) == 0;
+    const bool has_room = blocks.take(6 * piece) != nullptr && blocks.take(6 * piece) == nullptr;
+    _exit(barrier && is_limited && has_room ? 0 : 1);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  CHECK((test::sanitized || status == 0)); // a sanitizer's own memory is beyond such a limit
 }
 
 TEST_CASE("only blocks that were taken are given back, and memory that is not there is not given") {
@@ -116,12 +163,14 @@ TEST_CASE("only blocks that were taken are given back, and memory that is not th
   std::byte other{};
   CHECK_FALSE(blocks.give_back(&other));
   CHECK(blocks.take(std::size_t{1} << 60) == nullptr);
+  CHECK(blocks.take(std::numeric_limits<std::size_t>::max()) == nullptr);
   CHECK(blocks.used() == 0);
   CHECK(blocks.most_used() == 0);
   void* const block = blocks.take(1);
   CHECK(blocks.used() == page);
   CHECK(blocks.give_back(block));
   CHECK_FALSE(blocks.give_back(block));
+  CHECK(blocks.take(std::numeric_limits<std::size_t>::max()) == nullptr); // with a free range, too
 }
 
 } // namespace large_blocks_test
