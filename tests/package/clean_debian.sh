@@ -55,7 +55,7 @@ fi
 echo "=== the source archive, and scripts/package from it"
 "$source_dir/scripts/package" --source
 archive=$(echo "$source_dir"/build/package/keeler-*.tar.gz)
-commit=$(gzip -dc "$archive" | git get-tar-commit-id)
+commit=$(git get-tar-commit-id < <(gzip -dc "$archive")) # which reads no further than it needs
 fresh_system
 mkdir -p "$system$source_dir" # at the same path, which compiled objects in the cache depend on
 tar -C "$system$source_dir" --strip-components 1 -xf "$archive"
