@@ -51,6 +51,7 @@ void* LargeBlocks::take(std::size_t bytes) {
   used_ += bytes;
   most_used_ = std::max(most_used_, used_);
   release_excess(most_used_ - used_);
+  assert(used_ + kept_ <= most_used_);
   return block;
 }
 
@@ -73,6 +74,7 @@ bool LargeBlocks::give_back(void* block) {
     return false;
   used_ -= taken->second;
   keep(taken_.extract(taken));
+  assert(used_ + kept_ <= most_used_);
   return true;
 }
 
