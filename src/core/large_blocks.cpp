@@ -50,7 +50,7 @@ void* LargeBlocks::take(std::size_t bytes) {
   taken_.insert(std::move(taken));
   used_ += bytes;
   most_used_ = std::max(most_used_, used_);
-  release_excess(most_used_ - used_);
+  keep_at_most(most_used_ - used_);
   assert(used_ + kept_ <= most_used_);
   return block;
 }
@@ -64,7 +64,7 @@ std::byte* LargeBlocks::find(std::size_t bytes) {
     return cut_from(shortest, bytes);
   if (std::byte* const block = extend_longest(bytes))
     return block;
-  release_excess(0);
+  keep_at_most(0);
   return fetch(bytes);
 }
 
@@ -129,14 +129,14 @@ void LargeBlocks::keep(Ranges::node_type block) {
   }
 }
 
-// Returns what is kept beyond a number of bytes to the system, the shortest ranges first.
-void LargeBlocks::release_excess(std::size_t to_keep) {
-  while (kept_ > to_keep) {
+// Returns what is kept beyond this to the system, the shortest ranges first.
+void LargeBlocks::keep_at_most(std::size_t bytes) {
+  while (kept_ > bytes) {
     const auto range = std::min_element(free_.begin(), free_.end(), is_shorter);
-    const std::size_t bytes = std::min(range->second, kept_ - to_keep);
-    range->second -= bytes;
-    kept_ -= bytes;
-    munmap(range->first + range->second, bytes);
+    const std::size_t excess = std::min(range->second, kept_ - bytes);
+    range->second -= excess;
+    kept_ -= excess;
+    munmap(range->first + range->second, excess);
     if (range->second == 0)
       free_.erase(range);
   }

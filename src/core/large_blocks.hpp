@@ -60,7 +60,7 @@ private:
   std::byte* fetch(std::size_t bytes);
   std::byte* extend_longest(std::size_t bytes);
   void keep(Ranges::node_type block);
-  void release_excess(std::size_t to_keep);
+  void keep_at_most(std::size_t bytes);
 
   Ranges taken_, free_;
   std::size_t used_ = 0, kept_ = 0, most_used_ = 0;
