@@ -32,7 +32,7 @@ refuses "--until 1e18" "is too long" resume "$work/run" --until 1e18
 refuses "--until 1e300" "is too long" resume "$work/run" --until 1e300
 
 # Long values and bytes that are not text give a readable line.
-python3 -c 'print("x" * 1000000)' >"$work/long"
+/usr/bin/python3 -c 'print("x" * 1000000)' >"$work/long"
 sed "s/^solver = .*/solver = \"$(head -c 100000 "$work/long")\"/" "$work/scene.toml" >"$work/long.toml"
 refused_by_all "a long value" "gravity.solver" "$work/long.toml"
 refused_by_all "a long value by --set" "gravity.solver" "$work/scene.toml" --set "gravity.solver=$(head -c 100000 "$work/long")"
@@ -44,7 +44,7 @@ refused_by_all "the same by --set" "gravity.solver" "$work/scene.toml" --set "gr
 LC_ALL=C grep -qP '[\x80-\xff\x1b]' "$work/err" && fail "raw bytes in: $(cat -v "$work/err")"
 
 # Nesting depth, length and number of entries of a file.
-python3 - "$work" <<'END'
+/usr/bin/python3 - "$work" <<'END'
 import sys
 from pathlib import Path
 work = Path(sys.argv[1])
@@ -92,7 +92,7 @@ truncate -s 3T "$work/large.hdf"
 refuses_with 4 "a file larger than memory" "large.hdf': it is too large" info "$work/large.hdf"
 
 runs 0 run "$work/scene.toml" -o "$work/deep" --set time.end=0.02
-python3 - "$work/deep/summary.json" <<'END'
+/usr/bin/python3 - "$work/deep/summary.json" <<'END'
 import sys
 from pathlib import Path
 file = Path(sys.argv[1])

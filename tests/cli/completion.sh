@@ -92,9 +92,9 @@ types() {
   local name=$1
   shift
   command -v "$1" >/dev/null || { echo "no $1: not tried"; return; }
-  python3 "$source_dir/tests/cli/completion.py" 'keeler repo\tfol\t --sna\t' 'keeler report folder/ --snapshots ' "$@" ||
+  /usr/bin/python3 "$source_dir/tests/cli/completion.py" 'keeler repo\tfol\t --sna\t' 'keeler report folder/ --snapshots ' "$@" ||
     fail "$name"
-  python3 "$source_dir/tests/cli/completion.py" 'keeler run folder/p\t--set collisions.find\tnewton-re\t' \
+  /usr/bin/python3 "$source_dir/tests/cli/completion.py" 'keeler run folder/p\t--set collisions.find\tnewton-re\t' \
     'folder/part.toml --set collisions.finder=newton-relative ' "$@" || fail "$name, with values"
 }
 printf 'PS1="ready> "\nbind "set enable-bracketed-paste off"\nbind "set bell-style none"\nsource /usr/share/bash-completion/bash_completion\nsource "%s/keeler.bash"\n' "$scripts" >bashrc

@@ -55,7 +55,7 @@ damaged() {
   runs 4 info --verify "$work/hurt" --json
   prints "$1, JSON" '"damaged": 1,'
 }
-flip='python3 -c "import sys; b = bytearray(open(sys.argv[1], \"rb\").read()); b[len(b) // 2] ^= 1; open(sys.argv[1], \"wb\").write(b)"'
+flip='/usr/bin/python3 -c "import sys; b = bytearray(open(sys.argv[1], \"rb\").read()); b[len(b) // 2] ^= 1; open(sys.argv[1], \"wb\").write(b)"'
 for file in checkpoint_000001.h5 snap_000001.hdf collisions_000000.h5; do
   damaged "a bit of $file" "does not match its checksum" $file "$flip $file"
   runs 4 info --verify "$work/hurt/$file"

@@ -10,7 +10,7 @@ echo '[output.collisions]' >>"$work/scene.toml"
 # number EXPRESSION VALUE: the Python expression has this value in the printed JSON
 number() {
   local found
-  found=$(python3 -c "import json, sys; info = json.load(sys.stdin); print(($1))" <"$work/out")
+  found=$(/usr/bin/python3 -c "import json, sys; info = json.load(sys.stdin); print(($1))" <"$work/out")
   [ "$found" = "$2" ] || fail "$1 is $found, not $2, in $(cat "$work/out")"
 }
 
@@ -28,7 +28,7 @@ number 'info["wall_s"] < 60' True
 number '"keeler " + info["version"]' "$("$keeler" --version)"
 "$keeler" info "$work/run/snap_000000.hdf" >"$work/said"
 number '"Code/commit" + " " * 18 + info["commit"]' "$(grep Code/commit "$work/said")"
-contacts=$(python3 -c 'import json, sys; print(sum(f["contact_count"] for f in json.load(sys.stdin)["contacts"]))' <"$work/out")
+contacts=$(/usr/bin/python3 -c 'import json, sys; print(sum(f["contact_count"] for f in json.load(sys.stdin)["contacts"]))' <"$work/out")
 [ "$contacts" -gt 100 ] || fail "contacts: $contacts"
 accepts "a run in words" info "$work/run"
 prints "a run in words" "state       finished"

@@ -19,7 +19,7 @@ accepts "photometry" photometry "$work/run" --since 0 --elevation 20,-30 --sun-e
 cp "$work/out" "$work/one.json"
 accepts "photometry on two threads" photometry "$work/run" --since 0 --elevation 20,-30 --sun-elevation 15 --phase 60 --azimuth 0,40 --rays 8192 --json --threads 2
 cmp -s "$work/out" "$work/one.json" || fail "photometry: other numbers on two threads"
-python3 - "$work/one.json" <<'EOF' || fail "photometry: the JSON is not as it says"
+/usr/bin/python3 - "$work/one.json" <<'EOF' || fail "photometry: the JSON is not as it says"
 import json, math, sys
 found = json.load(open(sys.argv[1]))
 assert found["law"] == "callisto" and found["snapshots"] == 3 and not found["stopped"]
@@ -68,7 +68,7 @@ refuses "a missing column" "bad.csv:1: there is no column 'sun_elevation'" photo
 refuses "a figure of another kind" "give it one of these endings" photometry "$snap" --elevation 20 --figure "$work/a.jpg"
 
 accepts "occultation" occultation "$work/run" --since 0 --elevation 10,30 --azimuth 0,60,120 --tracks 20 --json
-python3 - "$work/out" <<'EOF' || fail "occultation: the JSON is not as it says"
+/usr/bin/python3 - "$work/out" <<'EOF' || fail "occultation: the JSON is not as it says"
 import json, sys
 found = json.load(open(sys.argv[1]))
 assert len(found["lines_of_sight"]) == 6 and not found["stopped"]
@@ -122,7 +122,7 @@ fi
 runs 0 bench light --count 2400 --state uniform --repeats 1 --elevation 40
 prints "bench light" "Embree alone, packets of 16"
 runs 0 bench light --from "$snap" --repeats 1 --json
-python3 - "$work/out" <<'EOF' || fail "bench light: the JSON is not as it says"
+/usr/bin/python3 - "$work/out" <<'EOF' || fail "bench light: the JSON is not as it says"
 import json, sys
 found = json.load(open(sys.argv[1]))
 assert found["paths_per_s"] > 0 and found["count"] > 0 and found["one_percent_s"] > 0 and "snap_000000" in found["from"]

@@ -60,7 +60,7 @@ speaks "a scene with escape sequences" check "$scene"
 speaks "a scene with escape sequences" run "$scene" -o "$work/run"
 snapshot=$work/run/snap_000000.hdf
 speaks "plots" render "$work/run" --series -o "$work/plots.svg"
-python3 -c 'import sys, xml.dom.minidom; xml.dom.minidom.parse(sys.argv[1])' "$work/plots.svg" || fail "plots are no XML"
+/usr/bin/python3 -c 'import sys, xml.dom.minidom; xml.dom.minidom.parse(sys.argv[1])' "$work/plots.svg" || fail "plots are no XML"
 
 # Names that are not UTF-8: everything works, and JSON stays valid.
 odd=$work/$'caf\xe9\x1b[31m'
@@ -72,7 +72,7 @@ for words in "info $odd" "info $odd --json" "info --verify $odd" "info --verify 
   "generate $scene -o $odd.hdf" "new a-ring-wakes -o $odd.toml" "new $odd" "check $scene --set $odd=1" "$odd" "run --$odd"; do
   read -ra arguments <<<"$words"
   speaks "$(cat -v <<<"$words")" "${arguments[@]}"
-  [[ $words != *--json ]] || python3 -c 'import json, sys; json.load(open(sys.argv[1], encoding="utf-8"))' "$work/out" ||
+  [[ $words != *--json ]] || /usr/bin/python3 -c 'import json, sys; json.load(open(sys.argv[1], encoding="utf-8"))' "$work/out" ||
     fail "$(cat -v <<<"$words"): no JSON"
 done
 

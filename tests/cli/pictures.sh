@@ -61,7 +61,7 @@ for _ in 1 2; do
   no_controls "report"
   runs 0 analyze "$work/run/snap_000000.hdf" --csv "$work/again.csv"
 done
-python3 - "$work" <<'END' || fail "files of plots"
+/usr/bin/python3 - "$work" <<'END' || fail "files of plots"
 import pathlib, struct, sys, xml.etree.ElementTree
 folder = pathlib.Path(sys.argv[1])
 svg = xml.etree.ElementTree.parse(folder / "again.svg").getroot()
@@ -131,7 +131,7 @@ one_line "an interrupted movie" "stopped before all was drawn"
 nothing_left "an interrupted movie"
 
 rm "$work"/run/snap_001[12]*.hdf # enough for a line of progress
-python3 "$source_dir/tests/cli/terminal.py" 40 "$keeler" render "$work/run" --movie --width 400 -o "$work/to/a.mp4" >"$work/drawn" 2>"$work/err" ||
+/usr/bin/python3 "$source_dir/tests/cli/terminal.py" 40 "$keeler" render "$work/run" --movie --width 400 -o "$work/to/a.mp4" >"$work/drawn" 2>"$work/err" ||
   fail "a movie on a terminal: $(cat "$work/err")"
 grep -q " left  pictures" "$work/drawn" || fail "no progress of a movie: $(cat "$work/drawn")"
 report

@@ -77,7 +77,7 @@ runs 0 run "$work/scene.toml" -o "$work/torn" --set time.end=0.5
 truncate -s -20 "$work/torn/log.jsonl"
 runs 0 resume "$work/torn" --until 1
 same "a torn line in the log" "$work/torn"
-python3 -c 'import json, sys; print([json.loads(line)["event"] for line in open(sys.argv[1])])' "$work/torn/log.jsonl" \
+/usr/bin/python3 -c 'import json, sys; print([json.loads(line)["event"] for line in open(sys.argv[1])])' "$work/torn/log.jsonl" \
   >"$work/out" || fail "a torn line in the log: $(cat "$work/torn/log.jsonl")"
 prints "a torn line in the log" "'resumed'"
 truncate -s -20 "$work/torn/log.jsonl"

@@ -32,7 +32,7 @@ os.kill(os.getpid(), number)
 os.execv(sys.argv[2], sys.argv[2:])'
 for signal in INT TERM HUP USR1; do
   code=0
-  timeout 60 python3 -c "$pending" "SIG$signal" "$keeler" "${endless[@]}" -o "$work/early" --wall-time 3 \
+  timeout 60 /usr/bin/python3 -c "$pending" "SIG$signal" "$keeler" "${endless[@]}" -o "$work/early" --wall-time 3 \
     2>"$work/err" || code=$?
   [ "$code" -eq 1 ] || fail "early $signal: exit $code: $(cat "$work/err")"
   grep -q 'stopped before the first step (on request)' "$work/err" || fail "early $signal: $(cat "$work/err")"
@@ -40,7 +40,7 @@ for signal in INT TERM HUP USR1; do
 done
 # other commands end at once
 code=0
-{ timeout 60 python3 -c "$pending" SIGUSR1 "$keeler" check "$work/scene.toml" >"$work/out" || code=$?; } 2>/dev/null
+{ timeout 60 /usr/bin/python3 -c "$pending" SIGUSR1 "$keeler" check "$work/scene.toml" >"$work/out" || code=$?; } 2>/dev/null
 [ "$code" -eq 138 ] || fail "early USR1, keeler check: exit $code"
 
 # Signals also end waiting for a pipe; otherwise `timeout -k` kills the program.

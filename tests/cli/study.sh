@@ -43,7 +43,7 @@ done
 grep -q "0 found by the scan alone, 0 by the certified finder alone" "$folder/report.md" ||
   fail "the truth is in doubt: $(grep 'dense scan' "$folder/report.md")"
 for name in figure1 figure2 figure4 figure5 figure6 local-times; do
-  python3 -c 'import sys, xml.dom.minidom; xml.dom.minidom.parse(sys.argv[1])' "$folder/figures/$name.svg" || fail "$name.svg"
+  /usr/bin/python3 -c 'import sys, xml.dom.minidom; xml.dom.minidom.parse(sys.argv[1])' "$folder/figures/$name.svg" || fail "$name.svg"
   [ -s "$folder/figures/$name.png" ] || fail "no $name.png"
 done
 grep -qx "certified" "$folder/figures/figure4.svg" || fail "figure4.svg does not name the finders"

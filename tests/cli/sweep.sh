@@ -223,7 +223,7 @@ runs 0 sweep "$work/small.toml" -o "$work/damaged" -q
 
 # A stopped --tables starts no run.
 code=0
-timeout 60 python3 -c 'import os, signal, sys
+timeout 60 /usr/bin/python3 -c 'import os, signal, sys
 signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM])
 os.kill(os.getpid(), signal.SIGTERM)
 os.execv(sys.argv[1], sys.argv[1:])' "$keeler" sweep "$work/small.toml" -o "$work/damaged" --tables 2>"$work/err" || code=$?

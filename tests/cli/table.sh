@@ -81,7 +81,7 @@ prints "relaxed" "moved 4 particles apart, by "
 runs 0 run "$work/scene.toml" --from "$work/relaxed.hdf" -o "$work/relaxed"
 
 # A table named in the scene, and tables unlike any ring: velocities without the shear or in other units, lengths in km.
-python3 - "$work" <<'END'
+/usr/bin/python3 - "$work" <<'END'
 import random, sys
 random.seed(3)
 spots = [(x, y) for x in range(-28, 30, 4) for y in range(-18, 20, 4)]

@@ -44,7 +44,7 @@ while read -r command; do
     rm -rf "$work/sweep" "$work/study"
     # Results are tables for a wide terminal or a file; they go to one.
     # shellcheck disable=SC2016 # that shell expands it
-    python3 "$source_dir/tests/cli/terminal.py" "$columns" /bin/sh -c '"$@" >"$0"' "$work/results" "$keeler" "$command" "${words[@]}" \
+    /usr/bin/python3 "$source_dir/tests/cli/terminal.py" "$columns" /bin/sh -c '"$@" >"$0"' "$work/results" "$keeler" "$command" "${words[@]}" \
       >"$work/drawn" 2>"$work/err" </dev/null || fail "$command, $columns columns: $(tail -n 3 "$work/err" "$work/drawn")"
   done
   rm -rf "$work/sweep" "$work/study"

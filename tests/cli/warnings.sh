@@ -48,7 +48,7 @@ runs 0 "${far[@]}" --set time.end=2 -o "$work/passage"
 [ "$(grep -c "^keeler: note: the satellite's passage at orbit 1.5 moves particles at 1.1 of the speed" "$work/err")" -eq 2 ] ||
   fail "a passage, at the start and when it comes: $(cat "$work/err")"
 prints "a passage" "note: the satellite's passage at orbit 1.5"
-python3 - "$work" <<'END' || fail "a passage in the files"
+/usr/bin/python3 - "$work" <<'END' || fail "a passage in the files"
 import json, sys
 work = sys.argv[1]
 log = [json.loads(line) for line in open(f"{work}/passage/log.jsonl")]
@@ -74,7 +74,7 @@ for count in 1 2; do
     grep -qE "$ratios" "$work/all" && fail "$name: $(cat "$work/all")"
     grep -qiE '>-?(nan|inf)<' "$work/$name"/report.html && fail "$name: the report"
     runs 0 analyze "$work/$name" --json
-    python3 - "$work/out" "$work/$name/summary.json" "$count" <<'END' || fail "$name: $(cat "$work/out")"
+    /usr/bin/python3 - "$work/out" "$work/$name/summary.json" "$count" <<'END' || fail "$name: $(cat "$work/out")"
 import json, sys
 def no_constant(name):
     raise ValueError(name)

@@ -4,7 +4,7 @@
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
-on_terminal() { python3 "$source_dir/tests/cli/terminal.py" "$@"; }
+on_terminal() { /usr/bin/python3 "$source_dir/tests/cli/terminal.py" "$@"; }
 
 for columns in 40 120; do
   # The summary at the end is a table for a wide terminal or a file; it goes to one.

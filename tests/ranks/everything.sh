@@ -62,7 +62,7 @@ checkpoint_every = 0.2'
 
 # error_of FOLDER: the error of forces that the last check found
 error_of() {
-  python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["force_error"]["rms"])' "$1/summary.json"
+  /usr/bin/python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["force_error"]["rms"])' "$1/summary.json"
 }
 for name in tree direct axisymmetric pile; do
   on_all_ranks "$name"

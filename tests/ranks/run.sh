@@ -222,7 +222,7 @@ done
 
 # A bench prints the gain by ranks and the cost of their communication.
 on_ranks 2 1 0 bench step --count 3000 --state clumped --solver fft --repeats 1 --json
-python3 - "$work/out" <<'END' || fail "bench step: $(cat "$work/out")"
+/usr/bin/python3 - "$work/out" <<'END' || fail "bench step: $(cat "$work/out")"
 import json, sys
 bench = json.load(open(sys.argv[1]))
 assert bench["ranks"] == 2 and bench["speedup"]["step"] > 0 and bench["contacts"] > 0
