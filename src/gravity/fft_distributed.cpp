@@ -37,8 +37,9 @@ double mean_mass_of_all(const GravityProblem& problem, std::uint64_t count) {
   return total > 0.0 ? total / static_cast<double>(count) : 1.0;
 }
 
-// Folds the particles into the cell. Throws InvariantError on all ranks if one is too far away. Collective.
-void fold(const GravityProblem& problem, double offset, std::vector<FoldedParticle>& folded) {
+// Returns the particles folded into the cell. Throws InvariantError on all ranks if one is too far away. Collective.
+std::vector<FoldedParticle> fold(const GravityProblem& problem, double offset) {
+  std::vector<FoldedParticle> folded;
   resize_scratch(folded, problem.positions.size());
   parallel_for(folded.size(), [&](std::size_t k) {
     const Vec3 p = into_cell(problem.box, offset, problem.positions[k]);
@@ -49,6 +50,7 @@ void fold(const GravityProblem& problem, double offset, std::vector<FoldedPartic
     if (!(max_x <= 0.5 * (1.0 + edge_tolerance) * problem.box.size_x))
       throw InvariantError("a particle is too far away to be folded into the box; take a shorter time.step");
   });
+  return folded;
 }
 
 std::vector<std::uint64_t> count_per_column(std::span<const FoldedParticle> particles, const Tiling& tiling,
@@ -82,7 +84,7 @@ FftSolver::Parts::DistributedSolve FftSolver::Parts::begin_distributed(const Gra
   assert(count > 0);
   const MeshShape shape = choose_mesh(problem.box, extent_of_all(problem), count);
   const Tiling tiling = tiling_for(shape, count);
-  fold(problem, offset, folded);
+  std::vector<FoldedParticle> folded = fold(problem, offset); // not needed once they are sorted
   const TileFinder find(tiling, problem.box);
   const std::vector<std::uint64_t> per_column = count_per_column(folded, tiling, find);
   MeshPartition partition(shape, tiling, problem.box, with_neighbours ? radius : 0.0, per_column, ranks);

@@ -11,7 +11,6 @@
 #include "wave_kernel.hpp"
 
 #include <keeler/core/exact_sum.hpp>
-#include <keeler/core/memory.hpp>
 #include <keeler/gravity/fft.hpp>
 
 #include <complex>
@@ -59,7 +58,6 @@ struct FftSolver::Parts {
     mesh.release_memory();
     by_columns.release_memory();
     by_waves.release_memory();
-    free_memory(folded);
   }
 
   /// Writes the accelerations of a tile's particles at their indices, and returns Σ m a over the tile in units of mass.
@@ -84,7 +82,6 @@ struct FftSolver::Parts {
   ShearedTransform transform;
   // of a distributed solve
   HalfSpectrum by_columns, by_waves;
-  std::vector<FoldedParticle> folded;
   // of the solve in progress
   double radius = 0.0; // of the clouds, m
   SelfForce self{};
