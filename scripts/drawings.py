@@ -275,7 +275,7 @@ def blocks():
 
 
 def transform_layout():
-    d = Drawing("Layout of the half spectrum between the transforms along y and x", 760, 380)
+    d = Drawing("Layout of the half spectrum between the transforms along y and x", 760, 394)
     left, top = 60, 70
     width, wave, plane = 200, 38, 11
     for b in range(3):
@@ -293,11 +293,13 @@ def transform_layout():
     x, y = left + width + 14 + 62, top + 4 + wave + 4 + 15
     d.line(x + 64, y + 12, x + 64, 222, "sb")
     d.text(x + 64, 238, "one plane z of one wave: 8 neighbouring columns, a cache line of complex floats", "middle", "small")
-    d.text(left, 272, "address = ((block × waves + k_y) × planes + z) × 8 + column within the block", "start")
+    d.text(left, 272, "address = block × length of a block + (k_y × planes + z) × 8 + column within the block", "start")
     d.lines(left, 300, (
             "The transform along y fills columns; the turn by −k_y d x / L_x and the transform along x read one wave through all blocks.",
             "Over ranks, a rank's columns begin a block of their own. So what one rank sends another, some waves of all its blocks (blue),",
-            "is a set of equal runs at equal distances, which MPI takes from where they are and puts where they belong, without packing."))
+            "is a set of equal runs at equal distances, which MPI takes from where they are and puts where they belong, without packing.",
+            "A block is where its eight columns of the mesh were, and a little shorter. A rank's waves of all columns are an array of",
+            "their own, without gaps."))
     return d
 
 

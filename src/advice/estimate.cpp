@@ -120,7 +120,7 @@ double tree_ns(const GravitySettings& gravity, double height, double count, doub
 
 // The mesh spacing follows the distances in the plane: a thick layer has many mesh planes.
 double mesh_ns(const Scene& scene, const GravitySettings& gravity, double height) {
-  constexpr double heights = 6.0, bytes_per_node = 8.0; // scale heights from the lowest particle to the highest
+  constexpr double heights = 6.0, bytes_per_node = 4.0; // scale heights from the lowest particle to the highest
   const double count = static_cast<double>(scene.particles.count),
                distance = std::sqrt(scene.size_x * scene.size_y / count);
   const double bytes = gravity::mesh_bytes(box_of(scene), gravity.mesh_spacing * distance, heights * height * distance,

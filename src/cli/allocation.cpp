@@ -1,5 +1,5 @@
-// The operator new of a program that runs as ranks: they use large blocks again (core/large_blocks.hpp). All other
-// blocks are the C library's. A library must not decide this for a process, so only the program has it.
+// The program's operator new, which uses large blocks again (core/large_blocks.hpp). All other blocks are the C
+// library's. A library must not decide this for a process, so only the program has it.
 #include <keeler/core/large_blocks.hpp>
 
 #include <cstddef>
@@ -9,6 +9,8 @@
 #include <mutex>
 #include <new>
 
+#include <unistd.h>
+
 namespace {
 
 constexpr std::size_t large_block = std::size_t{1} << 16; // bytes, at least
@@ -16,7 +18,8 @@ constexpr std::size_t large_block = std::size_t{1} << 16; // bytes, at least
 // A child of fork(2) may only allocate if no other thread of its parent did at that moment (io/child_process.cpp).
 struct SharedBlocks {
   std::mutex mutex;
-  keeler::LargeBlocks blocks;
+  // twice the machine's memory: addresses cost nothing, and free ranges are of many lengths
+  keeler::LargeBlocks blocks{2 * keeler::LargeBlocks::page * static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES))};
 };
 
 // Never destroyed: arrays of static lifetime may be freed after all else.
@@ -33,7 +36,8 @@ void* allocate(std::size_t bytes, std::size_t alignment) {
   if (bytes >= large_block && alignment <= keeler::LargeBlocks::page && keeler::large_blocks_are_reused()) {
     SharedBlocks& shared = shared_blocks();
     const std::lock_guard lock(shared.mutex);
-    return shared.blocks.take(bytes);
+    if (void* const block = shared.blocks.take(bytes))
+      return block;
   }
   if (alignment <= alignof(std::max_align_t))
     return std::malloc(bytes > 0 ? bytes : 1);

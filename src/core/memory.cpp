@@ -116,6 +116,7 @@ void keep_freed_memory() {
     return;
   mallopt(M_MMAP_MAX, 0);        // all blocks come from the heap,
   mallopt(M_TRIM_THRESHOLD, -1); // which never shrinks
+  reuse_large_blocks();
 #endif
 }
 

@@ -22,13 +22,14 @@ void require_memory(double bytes, const std::string& what, const std::string& re
 /// or NaN, or memory is missing for so many items of `bytes_each` (>= 0). `what` names the items.
 std::size_t affordable_size(double count, double bytes_each, const std::string& what, const std::string& remedy);
 
-/// Makes the C library keep freed blocks of any size for the next ones, for the rest of this process. By default it
-/// returns blocks of 32 MiB and more to the system, so a large patch fetches the memory of each kick page by page.
-/// Does nothing if the environment sets GLIBC_TUNABLES or a variable of mallopt(3), or without the GNU C library.
+/// Makes the program's operator new use large blocks again (large_blocks.hpp), and the C library keep freed blocks of
+/// any size for the next ones, for the rest of this process. By default it returns blocks of 32 MiB and more to the
+/// system, so a large patch fetches the memory of each kick page by page. Does nothing if the environment sets
+/// GLIBC_TUNABLES or a variable of mallopt(3), or without the GNU C library. Why: docs/dev/estimate.md.
 void keep_freed_memory();
 
-/// Makes it return freed blocks to the system early, and the program's operator new use large ones again
-/// (large_blocks.hpp). Where keep_freed_memory() does nothing this does nothing. Why: docs/dev/ranks.md.
+/// As above, but the C library returns its freed blocks early: in programs without that operator new, what one rank
+/// keeps would leave gaps. Why: docs/dev/ranks.md.
 void return_freed_memory();
 
 /// Empties a vector and frees its memory, which `v = {}` keeps: that assigns an empty list.

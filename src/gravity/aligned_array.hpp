@@ -23,11 +23,6 @@ public:
     values_ = std::move(other.values_);
     return *this;
   }
-  /// Takes over the memory of an array of another type; its values are lost.
-  template<class Other>
-  explicit AlignedArray(AlignedArray<Other>&& other)
-      : size_(std::exchange(other.size_, 0) * sizeof(Other) / sizeof(T)),
-        values_(reinterpret_cast<T*>(other.values_.release())) {}
 
   /// Makes room for `size` values at least.
   void resize_at_least(std::size_t size) {
@@ -46,7 +41,6 @@ private:
     void operator()(T* values) const { ::operator delete(values, line); }
   };
   static constexpr std::align_val_t line{64};
-  template<class Other> friend class AlignedArray;
 
   std::size_t size_ = 0;
   std::unique_ptr<T, Free> values_;

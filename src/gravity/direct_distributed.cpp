@@ -28,22 +28,32 @@ struct SourceRow {
   std::uint64_t id;
 };
 
-// This rank's part of the sources in the order of the ids, folded into the cell.
+// This rank's part of the sources in the order of the ids, folded into the cell. Ranks exchange them in batches, so
+// that only one of these is in memory twice.
 std::vector<SourceRow> sources_by_id(const GravityProblem& problem, double offset, std::size_t count) {
   const Communicator& ranks = problem.ranks;
   std::vector<std::size_t> places; // of the first source of each rank but the root
   for (std::size_t rank = 1; rank < ranks.size(); ++rank)
     places.push_back(count * rank / ranks.size() / unit_of_parts * unit_of_parts);
   const std::vector<std::uint64_t> first = particles::ids_at(problem.ids, ranks, places);
-  std::vector<std::vector<SourceRow>> sent(ranks.size());
-  for (std::size_t k = 0; k < problem.ids.size(); ++k) {
-    const auto rank = std::upper_bound(first.begin(), first.end(), problem.ids[k]) - first.begin();
-    const Vec3 p = into_cell(problem.box, offset, problem.positions[k]);
-    sent[static_cast<std::size_t>(rank)].push_back({{p.x(), p.y(), p.z(), problem.masses[k]}, problem.ids[k]});
-  }
+  places.insert(places.begin(), 0);
+  places.push_back(count);
+  const std::size_t own = places[ranks.rank() + 1] - places[ranks.rank()];
   std::vector<SourceRow> rows;
-  for (const std::vector<SourceRow>& some : ranks.exchange(sent))
-    rows.insert(rows.end(), some.begin(), some.end());
+  rows.reserve(own);
+  constexpr std::size_t batches = 16;
+  for (std::size_t batch = 0; batch < batches; ++batch) {
+    std::vector<std::vector<SourceRow>> sent(ranks.size());
+    const std::size_t end = problem.ids.size() * (batch + 1) / batches;
+    for (std::size_t k = problem.ids.size() * batch / batches; k < end; ++k) {
+      const auto rank = std::upper_bound(first.begin(), first.end(), problem.ids[k]) - first.begin();
+      const Vec3 p = into_cell(problem.box, offset, problem.positions[k]);
+      sent[static_cast<std::size_t>(rank)].push_back({{p.x(), p.y(), p.z(), problem.masses[k]}, problem.ids[k]});
+    }
+    for (const std::vector<SourceRow>& some : ranks.exchange(sent))
+      rows.insert(rows.end(), some.begin(), some.end());
+  }
+  assert(rows.size() == own);
   std::sort(rows.begin(), rows.end(), [](const SourceRow& a, const SourceRow& b) { return a.id < b.id; });
   return rows;
 }
@@ -179,6 +189,7 @@ std::vector<Vec3> sampled_accelerations_of_ranks(const GravityProblem& problem, 
   std::vector<PointSource> sources, targets;
   {
     const std::vector<SourceRow> rows = sources_by_id(problem, offset, count);
+    sources.reserve(rows.size());
     std::transform(rows.begin(), rows.end(), std::back_inserter(sources),
                    [](const SourceRow& row) { return row.source; });
     targets = targets_of(sample, rows, ranks);

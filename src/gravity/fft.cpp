@@ -35,9 +35,10 @@ double mass_spread(std::span<const double> masses, const Communicator& ranks) {
 
 namespace {
 
-// Nodes are floats; between the transforms there are half as many complex waves; each column of waves has phases.
+// Nodes are floats; between the transforms half as many complex waves take their place; each column of waves has
+// phases.
 double bytes_of_mesh(double nodes, double columns) {
-  return (sizeof(float) + 0.5 * sizeof(std::complex<float>)) * nodes + sizeof(std::complex<float>) * columns;
+  return sizeof(float) * nodes + sizeof(std::complex<float>) * columns;
 }
 
 } // namespace

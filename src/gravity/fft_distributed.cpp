@@ -90,13 +90,13 @@ FftSolver::Parts::DistributedSolve FftSolver::Parts::begin_distributed(const Gra
   MeshPartition partition(shape, tiling, problem.box, with_neighbours ? radius : 0.0, per_column, ranks);
   GhostExchange ghosts(folded, per_column, find, partition, ranks);
   sorted.sort(folded, problem.box, tiling, partition.own().needed, mean_mass_of_all(problem, count));
-  SpectrumTranspose transpose(partition);
+  SpectrumTranspose transpose(partition, shape);
   return {shape, offset / problem.box.size_y, std::move(partition), std::move(ghosts), std::move(transpose)};
 }
 
-// Spreads the masses on this rank's part of the mesh and transforms them along y: by_waves then has this rank's waves
-// of the whole mesh. Collective.
-void FftSolver::Parts::spread_distributed(const Communicator& ranks, const DistributedSolve& solve) {
+// Spreads the masses on this rank's part of the mesh and transforms them along y. Returns all waves of this rank's
+// columns, in the mesh's memory.
+HalfSpectrum FftSolver::Parts::spread_distributed(const DistributedSolve& solve) {
   const MeshPart& own = solve.partition.own();
   const MeshShape& shape = solve.shape;
   mesh.reset(shape, own.stored);
@@ -104,22 +104,21 @@ void FftSolver::Parts::spread_distributed(const Communicator& ranks, const Distr
   transform.prepare(shape, solve.offset_fraction, own.waves);
   waves.prepare(shape);
 
-  by_columns.reset({&own.interpolated, 1}, {0, transform.waves()}, shape.planes);
+  HalfSpectrum by_columns(mesh, own.interpolated, transform.waves());
   transform.forward_y(mesh, by_columns);
-  // reuses the mesh's memory: its values are not needed any more
-  by_waves.reset(solve.transpose.columns(), own.waves, shape.planes,
-                 AlignedArray<std::complex<float>>(mesh.release_memory()));
-  solve.transpose.to_waves(by_columns, by_waves, ranks);
+  return by_columns;
 }
 
 // Turns the masses into the potential at this rank's particles. Collective.
 void FftSolver::Parts::fill_mesh_distributed(const Communicator& ranks, const DistributedSolve& solve) {
-  spread_distributed(ranks, solve);
-  transform.change_waves(by_waves, [&](std::size_t m, const std::complex<float>* from, std::complex<float>* to) {
-    waves.apply(solve.shape, transform, m, kernels, from, to);
-  });
-  solve.transpose.to_columns(by_waves, by_columns, ranks);
-  mesh.adopt_memory(AlignedArray<float>(by_waves.release_memory()));
+  HalfSpectrum by_columns = spread_distributed(solve), by_waves;
+  for (std::size_t batch = 0; batch < solve.transpose.batches(); ++batch) {
+    solve.transpose.to_waves(batch, by_columns, by_waves, ranks);
+    transform.change_waves(by_waves, [&](std::size_t m, const std::complex<float>* from, std::complex<float>* to) {
+      waves.apply(solve.shape, transform, m, kernels, from, to);
+    });
+    solve.transpose.to_columns(batch, by_waves, by_columns, ranks);
+  }
   transform.backward_y(by_columns, mesh);
 }
 
@@ -132,8 +131,7 @@ void FftSolver::Parts::accelerate_distributed(const GravityProblem& problem, std
   const DistributedSolve solve = begin_distributed(problem, offset, settings.short_range);
   fill_mesh_distributed(ranks, solve);
 
-  // reuses the memory of by_columns: its values are not needed any more
-  AlignedArray<Vec3> memory(by_columns.release_memory());
+  AlignedArray<Vec3> memory;
   memory.resize_at_least(sorted.count());
   const std::span<Vec3> computed(memory.data(), sorted.count());
   std::vector<Vec3> sums(solve.tiles(sorted.tiling()));
@@ -143,19 +141,21 @@ void FftSolver::Parts::accelerate_distributed(const GravityProblem& problem, std
   auto total = exact_total<ExactVec3>(sums.size(), [&](ExactVec3& all, std::size_t k) { all += sums[k]; });
   ranks.merge({&total.x, &total.y, &total.z});
   const Vec3 mean = total.value() / static_cast<double>(count); // subtracted as in FftSolver::accelerate()
-  solve.ghosts.return_to_owners(computed, ranks, [&](std::size_t k, const Vec3& a) { accelerations[k] = a - mean; });
   release();
+  solve.ghosts.return_to_owners(computed, ranks, [&](std::size_t k, const Vec3& a) { accelerations[k] = a - mean; });
 }
 
 double FftSolver::Parts::mesh_potential_distributed(const GravityProblem& problem, double offset) {
   const DistributedSolve solve = begin_distributed(problem, offset, false);
-  spread_distributed(problem.ranks, solve);
+  HalfSpectrum by_columns = spread_distributed(solve), by_waves;
   std::vector<double> sums(solve.waves().size());
-  transform.visit_waves(by_waves, [&](std::size_t m, const std::complex<float>* from, std::complex<float>* to) {
-    waves.apply(solve.shape, transform, m, kernels, from, to);
-    sums[m - solve.waves().begin] = wave_potential(m, from, to);
-  });
-  mesh.adopt_memory(AlignedArray<float>(by_waves.release_memory()));
+  for (std::size_t batch = 0; batch < solve.transpose.batches(); ++batch) {
+    solve.transpose.to_waves(batch, by_columns, by_waves, problem.ranks);
+    transform.visit_waves(by_waves, [&](std::size_t m, const std::complex<float>* from, std::complex<float>* to) {
+      waves.apply(solve.shape, transform, m, kernels, from, to);
+      sums[m - solve.waves().begin] = wave_potential(m, from, to);
+    });
+  }
   auto sum = exact_total<ExactSum>(sums.size(), [&](ExactSum& all, std::size_t k) { all += sums[k]; });
   const std::size_t tiles = solve.tiles(sorted.tiling()), first = solve.first_tile(sorted.tiling());
   ExactSum squares;

@@ -56,8 +56,6 @@ struct FftSolver::Parts {
   void release() {
     sorted.release();
     mesh.release_memory();
-    by_columns.release_memory();
-    by_waves.release_memory();
   }
 
   /// Writes the accelerations of a tile's particles at their indices, and returns Σ m a over the tile in units of mass.
@@ -69,7 +67,7 @@ struct FftSolver::Parts {
   NearForces::Energy near_energy_distributed(const GravityProblem& problem, double offset);
   struct DistributedSolve;
   DistributedSolve begin_distributed(const GravityProblem& problem, double offset, bool with_neighbours);
-  void spread_distributed(const Communicator& ranks, const DistributedSolve& solve);
+  HalfSpectrum spread_distributed(const DistributedSolve& solve);
   void fill_mesh_distributed(const Communicator& ranks, const DistributedSolve& solve);
 
   FftSettings settings;
@@ -80,8 +78,6 @@ struct FftSolver::Parts {
   SortedParticles sorted;
   Mesh mesh;
   ShearedTransform transform;
-  // of a distributed solve
-  HalfSpectrum by_columns, by_waves;
   // of the solve in progress
   double radius = 0.0; // of the clouds, m
   SelfForce self{};

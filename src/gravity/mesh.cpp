@@ -57,7 +57,7 @@ void Mesh::reset(const MeshShape& shape, const IndexRange& columns) {
   assert(columns.end <= shape.columns + MeshShape::ghosts);
   shape_ = shape;
   first_column_ = columns.begin;
-  values_.resize_at_least(columns.size() * shape.column_length());
+  values_.resize_at_least((columns.size() + spare_columns) * shape.column_length());
   parallel_for(
       columns.size(),
       [&](std::size_t i) { std::memset(column(columns.begin + i), 0, shape.column_length() * sizeof(float)); }, 4);

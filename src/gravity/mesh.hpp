@@ -16,7 +16,6 @@
 #include <keeler/hill/shearing_box.hpp>
 
 #include <cassert>
-#include <utility>
 
 namespace keeler::gravity {
 
@@ -49,9 +48,11 @@ public:
   void reset(const MeshShape& shape) { reset(shape, {0, shape.columns + MeshShape::ghosts}); }
   void reset(const MeshShape& shape, const IndexRange& columns);
 
-  /// Releases the memory and with it all values; and takes memory over.
-  AlignedArray<float> release_memory() { return std::move(values_); }
-  void adopt_memory(AlignedArray<float> memory) { values_ = std::move(memory); }
+  /// Releases the memory and with it all values.
+  void release_memory() { values_ = AlignedArray<float>(); }
+
+  /// There is memory for so many columns behind the last one: a spectrum in the mesh's memory has whole blocks.
+  static constexpr std::size_t spare_columns = 7;
 
   const MeshShape& shape() const { return shape_; }
   float* column(std::size_t i) {

@@ -25,16 +25,30 @@ fftwf_complex* fftw(std::complex<float>* numbers) {
 
 } // namespace
 
+HalfSpectrum::HalfSpectrum(Mesh& mesh, const IndexRange& columns, std::size_t waves)
+    : waves_{0, waves}, planes_(mesh.shape().planes), block_length_(block * mesh.shape().column_length() / 2),
+      values_(reinterpret_cast<Complex*>(mesh.column(columns.begin))) {
+  static_assert(sizeof(Complex) == 2 * sizeof(float) && block <= Mesh::spare_columns + 1);
+  assert(waves * planes_ * block <= block_length_ && 2 * waves <= mesh.shape().row_length());
+  divide({&columns, 1});
+}
+
 void HalfSpectrum::reset(std::span<const IndexRange> columns, const IndexRange& waves, std::size_t planes) {
+  divide(columns);
+  waves_ = waves;
+  planes_ = planes;
+  block_length_ = waves.size() * planes * block;
+  memory_.resize_at_least(blocks() * block_length_);
+  values_ = memory_.data();
+}
+
+void HalfSpectrum::divide(std::span<const IndexRange> columns) {
   assert(std::is_sorted(columns.begin(), columns.end(),
                         [](const IndexRange& a, const IndexRange& b) { return a.begin < b.begin; }));
   columns_.clear();
   for (const IndexRange& range : columns)
     for (std::size_t begin = range.begin; begin < range.end; begin += block)
       columns_.push_back({begin, std::min(begin + block, range.end)});
-  waves_ = waves;
-  planes_ = planes;
-  values_.resize_at_least(blocks() * waves.size() * planes * block);
 }
 
 ShearedTransform::~ShearedTransform() {

@@ -31,7 +31,7 @@ namespace keeler::gravity {
 
 /// The spectrum between the transforms along y and x: waves m along y of ranges of columns (ghosts included), all
 /// planes. Layout: blocks of columns; in a block wave by wave; in a wave plane by plane, one cache line of eight
-/// columns each. Each range begins a block.
+/// columns each. Each range begins a block. Its memory is its own, or that of a mesh whose columns it replaces.
 class HalfSpectrum {
 public:
   using Complex = std::complex<float>;
@@ -39,17 +39,13 @@ public:
   /// Columns that are transposed together.
   static constexpr std::size_t block = 8;
 
+  HalfSpectrum() = default;
+  /// All waves of a range of a mesh's columns, in the mesh's memory: each block where its columns are. Valid until the
+  /// mesh is reset.
+  HalfSpectrum(Mesh& mesh, const IndexRange& columns, std::size_t waves);
+
   /// Sets the layout; values are lost. Precondition: ranges are ascending. Where they overlap the later one counts.
   void reset(std::span<const IndexRange> columns, const IndexRange& waves, std::size_t planes);
-
-  /// As above, reusing `memory` as the buffer.
-  void reset(std::span<const IndexRange> columns, const IndexRange& waves, std::size_t planes,
-             AlignedArray<Complex> memory) {
-    values_ = std::move(memory);
-    reset(columns, waves, planes);
-  }
-  /// Releases the memory and with it all values.
-  AlignedArray<Complex> release_memory() { return std::move(values_); }
 
   const IndexRange& waves() const { return waves_; }
   std::size_t blocks() const { return columns_.size(); }
@@ -57,27 +53,29 @@ public:
   const IndexRange& columns(std::size_t b) const { return columns_[b]; }
 
   /// Returns wave m of block b, plane by plane. Values behind the block's last column are undefined.
-  Complex* wave(std::size_t b, std::size_t m) { return values_.data() + position(b, m); }
+  Complex* wave(std::size_t b, std::size_t m) { return values_ + position(b, m); }
 
   /// Returns a range of waves of a range of blocks, to be sent or received in place.
   comm::Blocks part(const IndexRange& blocks, const IndexRange& waves) {
     const std::size_t size = sizeof(Complex);
-    if (blocks.size() == 0)
+    if (blocks.size() == 0 || waves.size() == 0)
       return {};
     assert(blocks.end <= columns_.size() && waves.begin >= waves_.begin && waves.end <= waves_.end);
-    return {reinterpret_cast<std::byte*>(values_.data() + position(blocks.begin, waves.begin)), blocks.size(),
-            size * waves.size() * planes_ * block, size * waves_.size() * planes_ * block};
+    return {reinterpret_cast<std::byte*>(values_ + position(blocks.begin, waves.begin)), blocks.size(),
+            size * waves.size() * planes_ * block, size * block_length_};
   }
 
 private:
+  void divide(std::span<const IndexRange> columns);
   std::size_t position(std::size_t b, std::size_t m) const {
-    return (b * waves_.size() + (m - waves_.begin)) * planes_ * block;
+    return b * block_length_ + (m - waves_.begin) * planes_ * block;
   }
 
   std::vector<IndexRange> columns_;
   IndexRange waves_;
-  std::size_t planes_ = 0;
-  AlignedArray<Complex> values_;
+  std::size_t planes_ = 0, block_length_ = 0; // complex numbers from one block to the next
+  Complex* values_ = nullptr;
+  AlignedArray<Complex> memory_;
 };
 
 class ShearedTransform {
@@ -106,22 +104,22 @@ public:
   /// `to`. Both arrays have one wave m of every plane, with n along a row. Unscaled: if `to` = `from` the mesh is
   /// multiplied by columns × rows.
   template<class Change> void apply(Mesh& mesh, const Change& change) {
-    HalfSpectrum whole = whole_spectrum();
+    HalfSpectrum whole = whole_spectrum(mesh);
     forward_y(mesh, whole);
     change_waves(whole, change);
     backward_y(whole, mesh);
   }
 
-  /// Transforms the mesh and calls visitor(m, spectra, scratch) for each wave; scratch has the size of spectra. Adds
-  /// the mesh's ghosts along y to its rows, and leaves it unchanged otherwise.
+  /// Transforms the mesh and calls visitor(m, spectra, scratch) for each wave; scratch has the size of spectra. The
+  /// mesh's values are lost.
   template<class Visitor> void visit(Mesh& mesh, const Visitor& visitor) {
-    HalfSpectrum whole = whole_spectrum();
+    HalfSpectrum whole = whole_spectrum(mesh);
     forward_y(mesh, whole);
     visit_waves(whole, visitor);
   }
 
   /// The three steps of apply(), for distributed meshes. Preconditions: for forward_y() and backward_y() the half
-  /// spectrum has all waves; for change_waves() and visit_waves() it has all columns.
+  /// spectrum has all waves, in its own memory or the mesh's; for change_waves() and visit_waves() it has all columns.
   void forward_y(Mesh& mesh, HalfSpectrum& half);
   void backward_y(HalfSpectrum& half, Mesh& mesh);
   template<class Change> void change_waves(HalfSpectrum& half, const Change& change) {
@@ -148,12 +146,7 @@ private:
   using Complex = std::complex<float>;
   static constexpr std::size_t block = HalfSpectrum::block;
 
-  HalfSpectrum whole_spectrum() const {
-    const IndexRange all{0, shape_.columns + MeshShape::ghosts};
-    HalfSpectrum whole;
-    whole.reset({&all, 1}, {0, waves()}, shape_.planes);
-    return whole;
-  }
+  HalfSpectrum whole_spectrum(Mesh& mesh) const { return {mesh, {0, shape_.columns + MeshShape::ghosts}, waves()}; }
   /// The phase of wave m at each column, as (cosine, cosine) and (−sine, sine).
   Complex* cosines(std::size_t m) { return phases_.data() + 2 * (m - first_wave_) * row_length(); }
   Complex* sines(std::size_t m) { return cosines(m) + row_length(); }

@@ -5,6 +5,9 @@
 // exchange is a set of whole blocks at a constant stride on one side and one run of them on the other, which MPI sends
 // and receives in place.
 //
+// The waves of each rank come in batches, one after the other, so that only a part of them needs memory beside the
+// spectrum by columns. Each wave is transformed alone, so batches change no bit.
+//
 // The three last columns of a part are ghosts, the first ones of the next part. Both ranks transform them; in the
 // layout by waves the later part's values overwrite the ghosts (HalfSpectrum).
 #pragma once
@@ -20,26 +23,28 @@
 
 namespace keeler::gravity {
 
-/// The layout of one solve. The spectra are arguments: their memory outlives it.
+/// The layout of one solve.
 class SpectrumTranspose {
 public:
-  explicit SpectrumTranspose(const MeshPartition& partition);
+  SpectrumTranspose(const MeshPartition& partition, const MeshShape& shape);
 
-  /// Ranges of columns of all parts, ascending: the columns of the spectrum by waves.
-  std::span<const IndexRange> columns() const { return columns_; }
+  std::size_t batches() const { return batches_; }
 
-  /// Send the spectrum by columns to that by waves, and back. Precondition: by_columns has the interpolated columns of
-  /// this rank and all waves; by_waves has columns() and the waves of this rank. Collective.
-  void to_waves(HalfSpectrum& by_columns, HalfSpectrum& by_waves, const Communicator& ranks) const;
-  void to_columns(HalfSpectrum& by_waves, HalfSpectrum& by_columns, const Communicator& ranks) const;
+  /// Send a batch of the spectrum by columns to that by waves, which gets the waves of this batch and rank and the
+  /// columns of all ranks, and back. Precondition: by_columns has the interpolated columns of this rank and all waves.
+  /// Collective.
+  void to_waves(std::size_t batch, HalfSpectrum& by_columns, HalfSpectrum& by_waves, const Communicator& ranks) const;
+  void to_columns(std::size_t batch, HalfSpectrum& by_waves, HalfSpectrum& by_columns, const Communicator& ranks) const;
 
 private:
-  std::vector<comm::Blocks> blocks_by_columns(HalfSpectrum& by_columns) const;
-  std::vector<comm::Blocks> blocks_by_waves(HalfSpectrum& by_waves, const Communicator& ranks) const;
+  IndexRange waves(std::size_t rank, std::size_t batch) const;
+  std::vector<comm::Blocks> blocks_by_columns(std::size_t batch, HalfSpectrum& by_columns) const;
+  std::vector<comm::Blocks> blocks_by_waves(HalfSpectrum& by_waves) const;
 
-  std::vector<IndexRange> columns_;
-  std::vector<IndexRange> blocks_; // per rank: its blocks in the layout by waves
-  std::vector<IndexRange> waves_;  // per rank
+  std::size_t planes_, batches_;
+  std::vector<IndexRange> columns_; // of all parts, ascending
+  std::vector<IndexRange> blocks_;  // per rank: its blocks in the layout by waves
+  std::vector<IndexRange> waves_;   // per rank
 };
 
 } // namespace keeler::gravity
