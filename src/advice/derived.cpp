@@ -113,7 +113,8 @@ double run_bytes(const Scene& scene, const Counts& counts) {
   if (scene.start_from || scene.particles.count == 0 || meshed == 0)
     return bytes;
   const double factor = std::sqrt(static_cast<double>(meshed) / static_cast<double>(scene.particles.count));
-  return bytes + mesh_memory(scene, gravity, meshed, factor * scene.size_x, factor * scene.size_y);
+  const double copies = meshed < counts.all ? 2.0 : 1.0; // ranks may hold all of their waves beside the mesh
+  return bytes + copies * mesh_memory(scene, gravity, meshed, factor * scene.size_x, factor * scene.size_y);
 }
 
 } // namespace

@@ -120,12 +120,12 @@ double tree_ns(const GravitySettings& gravity, double height, double count, doub
 
 // The mesh spacing follows the distances in the plane: a thick layer has many mesh planes.
 double mesh_ns(const Scene& scene, const GravitySettings& gravity, double height) {
-  constexpr double heights = 6.0, bytes_per_node = 4.0; // scale heights from the lowest particle to the highest
+  constexpr double heights = 6.0; // scale heights from the lowest particle to the highest
   const double count = static_cast<double>(scene.particles.count),
                distance = std::sqrt(scene.size_x * scene.size_y / count);
-  const double bytes = gravity::mesh_bytes(box_of(scene), gravity.mesh_spacing * distance, heights * height * distance,
-                                           scene.particles.count);
-  return cost::mesh + cost::mesh_node * bytes / bytes_per_node / count;
+  const gravity::MeshSize size = gravity::mesh_size(box_of(scene), gravity.mesh_spacing * distance,
+                                                    heights * height * distance, scene.particles.count);
+  return cost::mesh + cost::mesh_node * (size.nodes + size.cells) / count;
 }
 
 // Particles reach three scale heights from the mid-plane; a box narrower than that needs more rings of images.

@@ -2,6 +2,7 @@
 // library's. A library must not decide this for a process, so only the program has it.
 #include <keeler/core/large_blocks.hpp>
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -9,23 +10,42 @@
 #include <mutex>
 #include <new>
 
+#include <pthread.h>
 #include <unistd.h>
 
 namespace {
 
 constexpr std::size_t large_block = std::size_t{1} << 16; // bytes, at least
 
-// A child of fork(2) may only allocate if no other thread of its parent did at that moment (io/child_process.cpp).
+std::size_t memory_of_machine() {
+  const long pages = sysconf(_SC_PHYS_PAGES);
+  return pages > 0 ? static_cast<std::size_t>(pages) * keeler::LargeBlocks::page : 0;
+}
+
 struct SharedBlocks {
   std::mutex mutex;
-  // twice the machine's memory: addresses cost nothing, and free ranges are of many lengths
-  keeler::LargeBlocks blocks{2 * keeler::LargeBlocks::page * static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES))};
+  std::size_t most = memory_of_machine();
+  keeler::LargeBlocks blocks{2 * most}; // addresses cost nothing, and free ranges are of many lengths
+
+  // Returns null if there is no place, or more would be in use than the machine has: the C library decides then.
+  void* take(std::size_t bytes) {
+    const std::lock_guard lock(mutex);
+    return bytes <= most && blocks.used() <= most - bytes ? blocks.take(bytes) : nullptr;
+  }
 };
 
-// Never destroyed: arrays of static lifetime may be freed after all else.
+std::atomic<SharedBlocks*> made = nullptr; // once there has been a large block
+
+// Never destroyed: arrays of static lifetime may be freed after all else. A child of fork(2) gets them unlocked.
 SharedBlocks& shared_blocks() {
   alignas(SharedBlocks) static std::byte place[sizeof(SharedBlocks)];
-  static SharedBlocks* const only = new (place) SharedBlocks;
+  static SharedBlocks* const only = [] {
+    auto* const blocks = new (place) SharedBlocks;
+    made.store(blocks, std::memory_order_release);
+    pthread_atfork([] { made.load()->mutex.lock(); }, [] { made.load()->mutex.unlock(); },
+                   [] { made.load()->mutex.unlock(); });
+    return blocks;
+  }();
   return *only;
 }
 
@@ -33,12 +53,9 @@ SharedBlocks& shared_blocks() {
 void* allocate(std::size_t bytes, std::size_t alignment) {
   if (bytes > static_cast<std::size_t>(std::numeric_limits<std::ptrdiff_t>::max()))
     return nullptr;
-  if (bytes >= large_block && alignment <= keeler::LargeBlocks::page && keeler::large_blocks_are_reused()) {
-    SharedBlocks& shared = shared_blocks();
-    const std::lock_guard lock(shared.mutex);
-    if (void* const block = shared.blocks.take(bytes))
+  if (bytes >= large_block && alignment <= keeler::LargeBlocks::page && keeler::large_blocks_are_reused())
+    if (void* const block = shared_blocks().take(bytes))
       return block;
-  }
   if (alignment <= alignof(std::max_align_t))
     return std::malloc(bytes > 0 ? bytes : 1);
   return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
@@ -57,10 +74,10 @@ void* allocate_or_throw(std::size_t bytes, std::size_t alignment) {
 
 // Small blocks begin a page by chance, so few of them are looked up.
 void release(void* block) {
-  if (block && reinterpret_cast<std::uintptr_t>(block) % keeler::LargeBlocks::page == 0) {
-    SharedBlocks& shared = shared_blocks();
-    const std::lock_guard lock(shared.mutex);
-    if (shared.blocks.give_back(block))
+  SharedBlocks* const shared = made.load(std::memory_order_acquire);
+  if (shared && block && reinterpret_cast<std::uintptr_t>(block) % keeler::LargeBlocks::page == 0) {
+    const std::lock_guard lock(shared->mutex);
+    if (shared->blocks.give_back(block))
       return;
   }
   std::free(block);

@@ -125,7 +125,7 @@ Parsed parse(CLI::App& program, int argc, char** argv, const Communicator& ranks
 
 int run(int argc, char** argv) {
   const Communicator ranks = Communicator::launched();
-  if (!ranks.distributed()) // ranks return it
+  if (!ranks.distributed()) // ranks have a policy of their own
     keep_freed_memory();
   if (!ranks.is_root() && !std::freopen("/dev/null", "w", stdout)) // only rank 0 prints results
     throw IoError("cannot open /dev/null");

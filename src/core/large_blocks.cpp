@@ -23,19 +23,24 @@ std::atomic<bool> are_reused = false;
 } // namespace
 
 LargeBlocks::LargeBlocks(std::size_t bytes) {
-  const std::size_t count = (bytes + unit - 1) / unit;
+  const std::size_t count = (bytes + unit - 1) / unit, mapped = (count + 1) * unit;
   // no memory yet, and none set aside; one unit more, since the first one begins at a multiple of its size
-  void* const range =
-      mmap(nullptr, (count + 1) * unit, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  void* const range = mmap(nullptr, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (range == MAP_FAILED)
     return;
+  try {
+    free_.emplace(0, count * pages_in_unit);
+    units_.resize(count);
+  } catch (const std::bad_alloc&) {
+    free_.clear();
+    munmap(range, mapped);
+    return;
+  }
   mapping_ = range;
-  mapped_ = (count + 1) * unit;
+  mapped_ = mapped;
   const auto address = reinterpret_cast<std::uintptr_t>(range);
   begin_ = static_cast<std::byte*>(range) + (up_to_multiple(address, unit) - address);
   madvise(begin_, count * unit, MADV_HUGEPAGE); // where there are none, a unit gets its pages one by one
-  units_.resize(count);
-  free_.emplace(0, count * pages_in_unit);
 }
 
 LargeBlocks::~LargeBlocks() {
@@ -62,11 +67,13 @@ void* LargeBlocks::take(std::size_t bytes) {
   cut_from(range, pages);
   taken_.insert(std::move(taken));
   for_units(begin, pages, [this](Unit& some, std::size_t pages_there) {
-    some.used = static_cast<std::uint16_t>(some.used + pages_there);
     if (!std::exchange(some.has_memory, true)) {
       ++held_;
       fetched_ += unit;
+    } else if (some.used == 0) {
+      --empty_;
     }
+    some.used = static_cast<std::uint16_t>(some.used + pages_there);
   });
   end_ = std::max(end_, (begin + pages - 1) / pages_in_unit + 1);
   used_ += pages * page;
@@ -80,9 +87,10 @@ bool LargeBlocks::give_back(void* block) {
   const auto taken = address < first ? taken_.end() : taken_.find((address - first) / page);
   if (taken == taken_.end() || (address - first) % page != 0)
     return false;
-  for_units(taken->first, taken->second, [](Unit& some, std::size_t pages_there) {
+  for_units(taken->first, taken->second, [this](Unit& some, std::size_t pages_there) {
     assert(some.has_memory && some.used >= pages_there);
     some.used = static_cast<std::uint16_t>(some.used - pages_there);
+    empty_ += some.used == 0;
   });
   used_ -= taken->second * page;
   keep(taken_.extract(taken));
@@ -145,12 +153,13 @@ void LargeBlocks::keep(Ranges::node_type block) {
 
 // Returns units without blocks to the system, the last ones first, until no more than most_used() is held.
 void LargeBlocks::release_excess() {
-  for (std::size_t k = end_; k-- > 0 && held() > most_used_;) {
+  for (std::size_t k = end_; k-- > 0 && empty_ > 0 && held() > most_used_;) {
     Unit& some = units_[k];
     if (some.has_memory && some.used == 0) {
       madvise(begin_ + k * unit, unit, MADV_DONTNEED);
       some.has_memory = false;
       --held_;
+      --empty_;
     }
   }
   while (end_ > 0 && !units_[end_ - 1].has_memory)
@@ -162,6 +171,10 @@ void reuse_large_blocks() {
   const bool is_limited = getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur != RLIM_INFINITY;
   const bool has_such_pages = sysconf(_SC_PAGESIZE) == static_cast<long>(LargeBlocks::page);
   are_reused.store(has_such_pages && !is_limited, std::memory_order_relaxed);
+}
+
+void stop_reusing_large_blocks() {
+  are_reused.store(false, std::memory_order_relaxed);
 }
 
 bool large_blocks_are_reused() {

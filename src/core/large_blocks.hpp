@@ -42,7 +42,8 @@ public:
   LargeBlocks& operator=(const LargeBlocks&) = delete;
   ~LargeBlocks(); ///< Returns all to the system, blocks that are taken too.
 
-  /// Returns a block of `bytes` > 0 that begins a page; null if no free range is that long.
+  /// Returns a block of `bytes` > 0 that begins a page; null if no free range is that long, or its place cannot be
+  /// noted.
   void* take(std::size_t bytes);
 
   /// Returns false, and does nothing, if `block` was not taken from here.
@@ -74,13 +75,18 @@ private:
   std::byte* begin_ = nullptr; // of the first unit
   std::vector<Unit, CAllocator<Unit>> units_;
   Ranges taken_, free_;
-  std::size_t used_ = 0, most_used_ = 0, held_ = 0, end_ = 0; // bytes, bytes, units, the end of the units with memory
+  std::size_t used_ = 0, most_used_ = 0; // bytes
+  std::size_t held_ = 0, empty_ = 0;     // units with memory, and those of them without blocks
+  std::size_t end_ = 0;                  // of the units with memory
   std::uint64_t fetched_ = 0;
 };
 
 /// Makes the operator new of a program that has one (cli/allocation.cpp: without sanitizers) use large blocks again
-/// from now on. Does nothing on a system with other pages, or where addresses are limited (ulimit -v).
+/// from now on, but for systems with other pages and where addresses are limited (ulimit -v).
 void reuse_large_blocks();
+
+/// From now on it asks the C library for all blocks, so that a limit on addresses is one on memory.
+void stop_reusing_large_blocks();
 
 bool large_blocks_are_reused();
 

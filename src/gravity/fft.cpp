@@ -33,26 +33,17 @@ double mass_spread(std::span<const double> masses, const Communicator& ranks) {
   return mass > 0.0 ? std::sqrt(squares.value() * count) / mass : 1.0;
 }
 
-namespace {
+MeshSize mesh_size(const ShearingBox& box, double spacing, double height, std::size_t count) {
+  const Extent z{-0.5 * height, 0.5 * height};
+  const double step = affordable_spacing(box, spacing, z, count);
+  return {mesh_nodes(box, step, z), box.area() / (step * step)};
+}
 
 // Nodes are floats; between the transforms half as many complex waves take their place; each column of waves has
 // phases.
-double bytes_of_mesh(double nodes, double columns) {
-  return sizeof(float) * nodes + sizeof(std::complex<float>) * columns;
-}
-
-} // namespace
-
-double mesh_bytes(const ShearingBox& box, double spacing, double height, std::size_t count) {
-  const Extent z{-0.5 * height, 0.5 * height};
-  const double step = affordable_spacing(box, spacing, z, count);
-  return bytes_of_mesh(mesh_nodes(box, step, z), box.area() / (step * step));
-}
-
 double max_mesh_bytes(const ShearingBox& box, double spacing, double height, std::size_t count) {
-  const Extent z{-0.5 * height, 0.5 * height};
-  const double step = affordable_spacing(box, spacing, z, count);
-  return bytes_of_mesh(std::min(mesh_nodes(box, spacing, z), max_mesh_nodes(count)), box.area() / (step * step));
+  const double nodes = std::min(mesh_nodes(box, spacing, {-0.5 * height, 0.5 * height}), max_mesh_nodes(count));
+  return sizeof(float) * nodes + sizeof(std::complex<float>) * mesh_size(box, spacing, height, count).cells;
 }
 
 // The table has errors of equal spheres, a little above the measured ones in fresh and clumped patches

@@ -23,12 +23,17 @@ struct FftSettings {
 /// The cheapest spacing of the mesh, in mean particle distances, (number per area)^−1/2.
 inline constexpr double cheapest_spacing = 1.6;
 
-/// Returns the bytes of the mesh and its waves for `count` particles in a layer of total height `height` (m), without
-/// the memory per particle. For estimates; `spacing` is that of FftSettings.
-double mesh_bytes(const ShearingBox& box, double spacing, double height, std::size_t count);
+struct MeshSize {
+  double nodes, cells; ///< in all planes; of one
+};
 
-/// Returns the bytes that it takes at most: if the mesh has too many nodes (affordable_spacing()), particles at other
-/// heights may leave any number of nodes up to the bound.
+/// Returns the size of the mesh for `count` particles in a layer of total height `height` (m). For estimates; `spacing`
+/// is that of FftSettings.
+MeshSize mesh_size(const ShearingBox& box, double spacing, double height, std::size_t count);
+
+/// Returns the bytes of the mesh, whose memory its waves have too, and their phases, without the memory per particle
+/// and thread, at most: if the mesh has too many nodes (affordable_spacing()), particles at other heights may leave any
+/// number of nodes up to the bound. Ranks have some or all of their waves beside it.
 double max_mesh_bytes(const ShearingBox& box, double spacing, double height, std::size_t count);
 
 /// Returns √⟨m²⟩ / ⟨m⟩ over all ranks: 1 for equal masses. The bits do not depend on the order. Collective.

@@ -41,7 +41,7 @@ public:
 
   HalfSpectrum() = default;
   /// All waves of a range of a mesh's columns, in the mesh's memory: each block where its columns are. Valid until the
-  /// mesh is reset.
+  /// mesh is reset or released.
   HalfSpectrum(Mesh& mesh, const IndexRange& columns, std::size_t waves);
 
   /// Sets the layout; values are lost. Precondition: ranges are ascending. Where they overlap the later one counts.

@@ -2,6 +2,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/interrupt.hpp>
+#include <keeler/core/large_blocks.hpp>
 
 #include <fmt/format.h>
 
@@ -78,6 +79,7 @@ void isolate_child(const ChildLimits& limits, pid_t parent) {
     dup2(null_device, stream);
   lower_limit(RLIMIT_CORE, 0);
   lower_limit(RLIMIT_CPU, limits.cpu_s);
+  stop_reusing_large_blocks(); // their addresses are there already
   const std::size_t used = address_space();
   if (!sanitized && used > 0) // sanitizers reserve terabytes of addresses
     lower_limit(RLIMIT_AS, used + limits.memory);

@@ -112,21 +112,51 @@ TEST_CASE("sets of arrays, one after the other, need no new memory where each fi
   CHECK(blocks.most_used() == 50 * unit);
 }
 
-TEST_CASE(
-    "a block goes where the fewest units need memory, and what is kept beyond the most that was used is released") {
+TEST_CASE("a block goes where the fewest units need memory, and of such ranges into the shortest") {
   LargeBlocks blocks(100 * unit);
-  const auto taken = take_all<5>(blocks, {4, 1, 8, 1, 2});
+  const auto taken = take_all<5>(blocks, {8, 1, 4, 1, 2});
   CHECK(blocks.give_back(taken[0]));
   CHECK(blocks.give_back(taken[2]));
-  CHECK(blocks.take(3 * unit) == taken[0]); // the shorter of two free ranges
-  CHECK(blocks.take(7 * unit) == taken[2]);
+  CHECK(blocks.take(3 * unit) == taken[2]);
+  CHECK(blocks.take(7 * unit) == taken[0]);
   CHECK(blocks.fetched() == 16 * unit);
 
-  auto* const last = static_cast<std::byte*>(blocks.take(3 * unit)); // longer than the two that are left, of one unit
+  LargeBlocks others(8 * unit);
+  const auto first = take_all<2>(others, {4, 1});
+  CHECK(others.give_back(first[0]));
+  CHECK(others.take(2 * unit + page) == first[0]); // though the free end is shorter
+}
+
+TEST_CASE("a block may begin within a unit and end with it") {
+  LargeBlocks blocks(10 * unit);
+  auto* const one = static_cast<std::byte*>(blocks.take(page));
+  CHECK(blocks.take(unit - page) == one + page);
+  CHECK(blocks.held() == unit);
+  CHECK(blocks.take(unit) == one + unit);
+  CHECK(blocks.held() == 2 * unit);
+}
+
+TEST_CASE("free ranges that touch are one; addresses are of whole units") {
+  LargeBlocks blocks(4 * unit), odd(unit + 1);
+  const auto taken = take_all<2>(blocks, {2, 2});
+  CHECK(blocks.give_back(taken[0]));
+  CHECK(blocks.give_back(taken[1]));
+  CHECK(blocks.take(4 * unit) == taken[0]);
+  CHECK(odd.take(2 * unit) != nullptr);
+}
+
+TEST_CASE("what is held beyond the most that was used is released, the last units first") {
+  LargeBlocks blocks(12 * unit);
+  const auto taken = take_all<4>(blocks, {2, 1, 2, 1});
+  CHECK(blocks.give_back(taken[0]));
+  CHECK(blocks.give_back(taken[2]));
+  auto* const last = static_cast<std::byte*>(blocks.take(3 * unit)); // longer than both
   CHECK(std::all_of(last, last + 3 * unit, [](std::byte b) { return b == std::byte{0}; }));
-  CHECK(blocks.fetched() == 19 * unit);
-  CHECK(blocks.most_used() == 17 * unit);
-  CHECK(blocks.held() == 17 * unit);
+  CHECK(blocks.fetched() == 9 * unit);
+  CHECK(blocks.most_used() == 6 * unit);
+  CHECK(blocks.held() == 6 * unit);
+  CHECK(blocks.take(unit) == taken[0]);
+  CHECK(blocks.fetched() == 9 * unit);
 }
 
 TEST_CASE("a released unit is empty when it is used again") {

@@ -2,6 +2,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/interrupt.hpp>
+#include <keeler/core/large_blocks.hpp>
 
 #include <doctest/doctest.h>
 
@@ -87,7 +88,11 @@ TEST_CASE("a child cannot exceed its memory limit") {
     sink = meal.back();
     return sink;
   };
-  CHECK_THROWS_WITH_AS(apart(eat), doctest::Contains("cannot read it: it takes more memory than there is"), IoError);
+  for (void (*const policy)() : {stop_reusing_large_blocks, reuse_large_blocks}) {
+    policy();
+    CHECK_THROWS_WITH_AS(apart(eat), doctest::Contains("cannot read it: it takes more memory than there is"), IoError);
+  }
+  stop_reusing_large_blocks();
 }
 #endif
 
