@@ -76,7 +76,7 @@ private:
   std::vector<Unit, CAllocator<Unit>> units_;
   Ranges taken_, free_;
   std::size_t used_ = 0, most_used_ = 0; // bytes
-  std::size_t held_ = 0, empty_ = 0;     // units with memory, and those of them without blocks
+  std::size_t held_ = 0, empty_ = 0;     // units with memory, and how many of them have no blocks
   std::size_t end_ = 0;                  // of the units with memory
   std::uint64_t fetched_ = 0;
 };
