@@ -72,6 +72,7 @@ std::vector<Sample> samples() {
   };
   return {
       sample("even, wide", 6000, 400.0, 60.0, anywhere),
+      sample("even, waves in batches", 16000, 300.0, 300.0, anywhere),
       sample("even, long", 3000, 50.0, 240.0, anywhere),
       sample("clumped", 4000, 160.0, 100.0, clumped),
       sample("at one side", 3000, 300.0, 50.0, at_one_side),
